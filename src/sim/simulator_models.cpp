@@ -8,6 +8,7 @@
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
+#include "build/joint_loads.h"
 #include "build/robot_builder.h"
 #include "config/config_check.h"
 #include "config/scene_limits.h"
@@ -19,6 +20,7 @@ namespace blem_sim::sim {
 namespace {
 
 constexpr double SHORTEST_STEP = 1e-6, LONGEST_STEP = 0.1;  // [s]
+constexpr double AT_LIMIT = 1e-6;                           // [rad or m] by which a joint that rests on a limit may be beyond it
 
 ObjectConfig objectOf(const RobotConfig& robot) {
   ObjectConfig object;
@@ -41,6 +43,20 @@ std::set<std::string> keptJoints(const SimulatedWorld& world, int robot) {
   for (const SensorInfo& sensor : world.sensors)
     if (sensor.robot == robot && sensor.config.type == SensorType::FORCE_TORQUE) joints.insert(sensor.config.joint);
   return joints;
+}
+
+/** Tells motors what their efforts meet now that links weigh otherwise. */
+void weighLoads(const RobotInfo& robot, SimulatedWorld* world) {
+  const auto jointOf = [&](std::size_t j) { return robot.world_joints[j]; };
+  std::vector<double> positions(robot.world_joints.size(), 0);
+  for (std::size_t j = 0; j < positions.size(); ++j)
+    if (jointOf(j) >= 0) positions[j] = world->start_positions[jointOf(j)];
+  std::vector<JointLoad> loads = jointLoads(*robot.lumped, positions, robot.fixed_base, 0);
+  for (std::size_t j = 0; j < loads.size(); ++j) {
+    if (!robot.lumped->joints[j].moves()) continue;
+    loads[j].child.inertia += world->world.jointSpec(jointOf(j)).armature;
+    world->motors[jointOf(j)].setInertia(lightInertia(loads[j]));
+  }
 }
 
 }  // namespace
@@ -123,6 +139,7 @@ void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassPr
     world_.world.setInertial(body, lumped->bodies[robot.lumped->link_placement[link].body].inertial);
     robot.description = description;
     robot.lumped = lumped;
+    weighLoads(robot, &world_);
     sensors_.remake(world_, config_.time_step);
   }
   forgetContacts(world_.collidersOf(model));
@@ -149,7 +166,7 @@ void Simulator::Impl::setJointLimits(int robot, int joint, double lower, double 
   if (world_.motors[world_joint].settings().continuous) throw InputError(where + "turns without end and takes no limits");
   if (!(lower <= upper)) throw InputError(fmt::format("{}loStop {:g} and hiStop {:g}: the lower comes first", where, lower, upper));
   const double position = world_.world.jointState(world_joint).position;
-  if (!(lower <= position && position <= upper))
+  if (!(lower - AT_LIMIT <= position && position <= upper + AT_LIMIT))
     throw InputError(fmt::format("{}stands at {:.6g}, which is not from {:g} to {:g}; move it there first", where, position, lower, upper));
   world_.world.setJointLimits(world_joint, lower, upper);
   info.limits[joint].lower = lower;
@@ -218,6 +235,7 @@ void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, doubl
   if (time_step == config_.time_step) return;
   epoch_ = {time(), step_count_};
   config_.time_step = time_step;
+  builder_.setTimeStep(time_step);
   layout_.clear();
   sensors_.remake(world_, config_.time_step);
 }

@@ -157,9 +157,8 @@ void Simulator::Impl::setJointPositions(int index, const std::vector<std::string
   const std::vector<std::size_t> set = indicesOf(robot, names, positions);
   JointValues values = valuesOf(world_.world, robot);
   for (std::size_t i = 0; i < set.size(); ++i) {
-    const model::JointLimits& limits = joints[set[i]].limits;
-    values.positions[set[i]] =
-        joints[set[i]].type == model::JointType::CONTINUOUS ? positions[i] : std::clamp(positions[i], limits.lower, limits.upper);
+    const dynamics::JointSpec& limits = world_.world.jointSpec(robot.world_joints[set[i]]);
+    values.positions[set[i]] = std::clamp(positions[i], limits.lower, limits.upper);
     values.rates[set[i]] = 0;
   }
   followMasters(*robot.lumped, &values);

@@ -166,7 +166,7 @@ void RobotBuilder::addBodies() {
 }
 
 void RobotBuilder::addJoints() {
-  const RobotMotors motors = robotMotors(config_, *model_, *lumped_, positions_, world_->world.gravity().norm());
+  const RobotMotors motors = robotMotors(config_, *model_, *lumped_, positions_, world_->gravityToHold());
   for (const std::string& words : motors.notes) note(words);
   info_.world_joints.assign(lumped_->joints.size(), -1);
   for (const int j : mastersFirst(*lumped_, "robots: " + config_.name))

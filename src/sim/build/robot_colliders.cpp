@@ -10,7 +10,7 @@ namespace blem_sim::sim {
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   double mass = 0;
   for (const model::LumpedBody& body : lumped_->bodies) mass += body.inertial.mass;
-  const WidthNeeds needs = needsOfLink(mass * world_->world.gravity().norm());
+  const WidthNeeds needs = needsOfLink(mass * world_->gravityToHold());
   for (std::size_t link = 0; link < model_->links.size(); ++link) {
     const model::LinkModel& description = model_->links[link];
     const ContactSettings of_link = contactSettings(

@@ -9,6 +9,11 @@
 #include "blem_sim/geometry/input_error.h"
 
 namespace blem_sim::sim {
+namespace {
+
+constexpr double EARTHS_GRAVITY = 9.81;  // [m/s^2]
+
+}  // namespace
 
 void SimulatedWorld::checkNewName(const std::string& name, const std::string& section) const {
   if (name.empty()) throw InputError(fmt::format("{}: an entry has no name; give it one", section));
@@ -176,6 +181,8 @@ Vector3 SimulatedWorld::linkOrigin(const contact::Collider& collider, const std:
   if (collider.link < 0) return bodies[collider.body].X_WB.translation();
   return linkPose(robots[robotOf(collider.model)], collider.link, bodies).translation();
 }
+
+double SimulatedWorld::gravityToHold() const { return std::max(EARTHS_GRAVITY, world.gravity().norm()); }
 
 void SimulatedWorld::bodyStates(std::vector<dynamics::BodyState>* out) const {
   out->resize(world.bodyCount());

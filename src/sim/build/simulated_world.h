@@ -65,6 +65,8 @@ struct SimulatedWorld {
   Pose linkPose(const RobotInfo& robot, int link, const std::vector<dynamics::BodyState>& bodies) const;
   /** [m] Origin, in the world, of the link that a collider is on when the bodies have these states; of the body where it is on no link. */
   Vector3 linkOrigin(const contact::Collider& collider, const std::vector<dynamics::BodyState>& bodies) const;
+  /** [m/s^2] Gravity that layers and gains are chosen for: that at hand, the earth's at least, which may be switched on later. */
+  double gravityToHold() const;
   /** State of every body slot. */
   void bodyStates(std::vector<dynamics::BodyState>* out) const;
 

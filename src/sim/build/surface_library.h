@@ -34,6 +34,8 @@ class SurfaceLibrary {
       : mending_(mending), time_step_(time_step) {}
   /** Gives what the other one knows, if it mends as this one does. Precondition: this one knows nothing. */
   void learnFrom(const SurfaceLibrary& other);
+  /** @param time_step [s] of boundary widths that are chosen from now on */
+  void setTimeStep(double time_step) { time_step_ = time_step; }
   /** @throws InputError as loadSurface does */
   SharedSurface load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud, const model::LoadProgress& progress);
   /** @param topology of the mesh, if it is at hand @param cylinder that the mesh stands for */
@@ -79,7 +81,7 @@ class SurfaceLibrary {
     std::optional<double> noise;  ///< [m] once somebody asked
   };
   const model::Mending mending_;
-  const double time_step_;
+  double time_step_;
   std::map<std::string, Entry> files_;
   std::map<std::pair<const contact::CollisionGeometry*, double>, Shrunk> shrunk_;
   std::map<const geometry::TriangleMesh*, OfMesh> meshes_;

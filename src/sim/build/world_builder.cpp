@@ -214,7 +214,7 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   SharedSurface surface = load(config.uri, config.scale, config.cloud, where, watch);
   const Pose X_OC = config.X_OM * Eigen::Translation3d(surface.origin);
   ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
-  const WidthNeeds needs = needsOfMeshObject(*config.mass * world->world.gravity().norm());
+  const WidthNeeds needs = needsOfMeshObject(*config.mass * world->gravityToHold());
   surfaces_.chooseWidth(*surface.geometry, needs, surface.radius, &settings, &surface.report);
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width.metres;
 
@@ -269,7 +269,7 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
   if (!weightless.empty() && weightless.size() < model.links.size())
     world->notes.push_back(config.name +
                            ": gravity acts on all links of an object or on none; load it under robots, or turn it off for all");
-  const WidthNeeds needs = needsOfLink(inertial.mass * world->world.gravity().norm());
+  const WidthNeeds needs = needsOfLink(inertial.mass * world->gravityToHold());
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     const ContactSettings of_link = contactSettings(
         contact_.boundary_width, contact_, {overridesOf(described.config.described_links, model.links[link].name), &config.contact});

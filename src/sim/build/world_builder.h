@@ -42,6 +42,8 @@ class WorldBuilder {
   void addObject(const ObjectConfig& config, SimulatedWorld* world);
   /** Description of a robot that is not added yet. @throws InputError */
   std::shared_ptr<const model::RobotModel> describe(const RobotConfig& config);
+  /** @param time_step [s] of models to come */
+  void setTimeStep(double time_step) { surfaces_.setTimeStep(time_step); }
   /** Lets later loads read files below these folders alone. */
   void restrictFiles(const model::FileRoots& roots) { resolver_.restrictTo(roots); }
 

@@ -63,6 +63,7 @@ class JointMotor {
     settings_.velocity_gain.reset();
   }
   void setViscousFriction(double friction) { settings_.friction.viscous = friction; }
+  void setInertia(double inertia) { settings_.inertia = inertia; }
   void save(geometry::StateWriter* writer) const;
   void restore(geometry::StateReader* reader);
 
