@@ -118,6 +118,7 @@ void ArticulatedStepper::readEdits(const Scene& scene) {
     readTree(forest_, scene, tree, &motion_);
     placeBodies(forest_, tree, &motion_);
     computeInertias(forest_, tree, &motion_);
+    joinVelocities(forest_, scene, tree, &motion_, &space_);
     takeMomentum(forest_, tree, &motion_, &space_);
   }
 }

@@ -99,8 +99,7 @@ void Simulator::Impl::attach(const std::string& object, const LinkPart& part, do
   weld.joint = world_.addJoint(spec, 0, JointMotor(MotorSettings(), 0));
   world_.attachments.push_back(weld);
   partWelded();
-  moveRigidly(model, weld.body, carriedBy(world, weld));
-  carryAlong(model);
+  forgetContacts(world_.collidersOf(model));
   layout_.clear();
   reportWithoutStep();
 }

@@ -107,8 +107,8 @@ class Simulator {
   void restrictFiles(const model::FileRoots& roots);
 
   /**
-   * Welds a model that can move, as it stands now, to a part of another model: it takes that part's motion and goes on with it. They do not
-   * touch each other while it lasts.
+   * Welds a model that can move, as it stands now, to a part of another model. In the next step both come to move as one, momentum staying
+   * as it is, as in an impact of things that stick. They do not touch each other while it lasts.
    * @param object name of the model
    * @param max_force [N], max_torque [N m] about the object's origin, means of a step: beyond them the weld breaks after the step
    * @throws InputError, nothing being changed: no such model, a fixed base, attached already, or the part hangs on the object itself

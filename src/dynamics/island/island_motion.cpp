@@ -13,6 +13,8 @@ namespace {
 // half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
+constexpr double ONE_MOTION = 1e-6;  // of the fastest body's velocities: bodies of a tree that differ by less move as one, but for rounding
+
 constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
@@ -145,6 +147,26 @@ void setPace(Pace pace, const TreeAhead& ahead, ForestMotion* motion, SolverSpac
 }
 
 }  // namespace
+
+void joinVelocities(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion, SolverSpace* space) {
+  const ForestTree& t = forest.trees()[tree];
+  double apart = 0, fastest = 0;
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const int body = forest.nodes()[i].body;
+    const Vector3 velocity = scene.velocity(body), spin = scene.spin(body);
+    const Vector6 own = spatial(spin, velocity - spin.cross(motion->com[i])), difference = own - motion->twist[i];
+    motion->node_force[i] = motion->inertia[i].times(difference);
+    apart = std::max({apart, angular(difference).norm(), velocityAt(difference, motion->com[i]).norm()});
+    fastest = std::max({fastest, spin.norm(), velocity.norm()});
+  }
+  if (apart <= ONE_MOTION * fastest) return;
+  space->direction.segment(t.first_dof, t.dofCount()).setZero();
+  WrenchProjection{forest, *motion, 1, &motion->node_force, &space->direction}.addTree(tree);
+  factorTree({forest, tree, motion->mass}, &space->hessian);
+  solveTree(forest, tree, space->hessian, &space->direction, &space->paths);
+  motion->velocity.segment(t.first_dof, t.dofCount()) += space->direction.segment(t.first_dof, t.dofCount());
+  computeTwists(forest, tree, *motion, motion->velocity, &motion->twist);
+}
 
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
   const ForestTree& t = forest.trees()[tree];
