@@ -13,7 +13,7 @@ namespace {
 // half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
-constexpr double ONE_MOTION = 1e-6;  // of the fastest body's velocities: bodies of a tree that differ by less move as one, but for rounding
+constexpr double ONE_MOTION = 1e-6;  // of the fastest body's velocities: welded bodies that differ by less move as one, but for rounding
 
 constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
@@ -156,7 +156,7 @@ void joinVelocities(const Forest& forest, const Scene& scene, int tree, ForestMo
     const Vector3 velocity = scene.velocity(body), spin = scene.spin(body);
     const Vector6 own = spatial(spin, velocity - spin.cross(motion->com[i])), difference = own - motion->twist[i];
     motion->node_force[i] = motion->inertia[i].times(difference);
-    apart = std::max({apart, angular(difference).norm(), velocityAt(difference, motion->com[i]).norm()});
+    if (forest.nodes()[i].dofs == 0) apart = std::max({apart, angular(difference).norm(), velocityAt(difference, motion->com[i]).norm()});
     fastest = std::max({fastest, spin.norm(), velocity.norm()});
   }
   if (apart <= ONE_MOTION * fastest) return;

@@ -9,8 +9,8 @@
 namespace blem_sim::dynamics {
 
 /**
- * Lets bodies of a tree that was just read, and move otherwise than its joints allow, as things do that were just welded, come to move
- * together as in a plastic impact: with the velocities of least kinetic energy of the difference, which keep the tree's momentum.
+ * Lets bodies of a tree that was just read, and move otherwise than their fixed joints allow, as things do that were just welded, come to
+ * move together as in a plastic impact: with the velocities of least kinetic energy of the difference, which keep the tree's momentum.
  */
 void joinVelocities(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion, SolverSpace* space);
 
