@@ -213,8 +213,10 @@ struct Simulator::Impl {
   /** @throws InputError: no model, or one that is gone */
   void requireAlive(int model) const;
   void resetModel(int model);
-  /** Bodies, joints, motors and loads of a model as they were at the start. */
+  /** Bodies, joints, motors and loads of a model as they were at the start; joints within the limits that hold now. */
   void restart(const ModelInfo& model, int robot);
+  /** Moves a robot's joints whose start positions are beyond their limits to these. */
+  void moveIntoLimits(int robot);
   void resetWorld();
   int modelOfBody(int body) const;
   geometry::MassProperties linkInertial(int body, int link) const;

@@ -193,6 +193,21 @@ void Simulator::Impl::restart(const ModelInfo& model, int robot) {
     loads_.clearJoint(joint);
   }
   sensors_.resetOf(world_, robot);
+  moveIntoLimits(robot);
+}
+
+void Simulator::Impl::moveIntoLimits(int index) {
+  const RobotInfo& robot = world_.robots[index];
+  std::vector<std::string> names;
+  std::vector<double> positions;
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const dynamics::JointSpec& limits = world_.world.jointSpec(robot.joints[j]);
+    const double start = world_.start_positions[robot.joints[j]];
+    if (!robot.driven[j] || (limits.lower <= start && start <= limits.upper)) continue;
+    names.push_back(robot.joint_names[j]);
+    positions.push_back(start);
+  }
+  if (!names.empty()) setJointPositions(index, names, positions);
 }
 
 void Simulator::Impl::resetModel(int index) {

@@ -48,6 +48,20 @@ TEST(LiveProperties, LimitsThatAJointRestsOnMaySetTheOther) {
   }
 }
 
+TEST(LiveProperties, ResetsStayWithinTheLimitsThatHold) {
+  SimulationConfig config = freeArm();
+  config.gravity = Vector3::Zero();
+  Simulator simulator(config, model::UriResolver());
+  simulator.setJointPositions(0, {"hinge"}, {0.5});
+  simulator.setJointLimits(0, 0, 0.3, 1);
+  for (const bool all : {true, false}) {
+    all ? simulator.resetWorld() : simulator.resetModel(0);
+    EXPECT_DOUBLE_EQ(armAngle(simulator), 0.3);
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(simulator.step().status & ENERGY_GAINED, 0u);
+    EXPECT_NEAR(armAngle(simulator), 0.3, 1e-9);
+  }
+}
+
 TEST(LiveProperties, VelocityLimitsHoldForLinksThatWereMadeLighter) {
   constexpr double LIMIT = 10, LIGHTER = 1e-4;
   SimulationConfig config = freeArm();
