@@ -10,10 +10,12 @@ import sys
 
 import yaml
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "test" / "support"))
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "test" / "support"), str(ROOT / "scripts" / "support")]
 import gripper_motions  # noqa: E402
-from scene_runs import read_motion, world, write_trajectory  # noqa: E402
+from scene_runs import read_motion, world  # noqa: E402
 from shared_data import shared_data  # noqa: E402
+from trajectory_file import smooth, write_trajectory  # noqa: E402
 
 ROW_STEP = 0.02  # [s]
 TRAY_BOTTOM = 0.645  # [m] height
@@ -25,7 +27,7 @@ def arms_swung(config, duration):
     rows = []
     for k in range(int(round(duration / ROW_STEP)) + 1):
         t = k * ROW_STEP
-        swing = 0.3 * gripper_motions.smooth(t, 0.0, 1.0) * math.sin(math.pi * t)
+        swing = 0.3 * smooth(t, 0.0, 1.0) * math.sin(math.pi * t)
         turned = {joint: start[joint] + sign * swing for joint, sign in
                   (("Body_LSP_joint", 1), ("Body_RSP_joint", -1), ("Body_LEP_joint", -1), ("Body_REP_joint", -1))}
         rows.append((t, dict(start, **turned)))

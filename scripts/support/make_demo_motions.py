@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Writes the demos' trajectories, config/demo_*.csv, and tells the humanoid's start pose on the scanned floor.
 
 Usage: scripts/support/make_demo_motions.py [OUT_DIR]     default: config/ of this package
@@ -9,6 +9,9 @@ import os
 import struct
 import sys
 import xml.etree.ElementTree as xml
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from trajectory_file import smooth  # noqa: E402
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
@@ -50,12 +53,6 @@ def posture(sway=0.0):
         joints.update(leg_angles(side, pelvis_position(sway)))
         joints.update({side + "_" + name: angle for name, angle in ARMS.items()})
     return joints
-
-
-def smooth(t, start, end):
-    """0 before start, 1 after end, in between without a jump in acceleration."""
-    s = min(max((t - start) / (end - start), 0.0), 1.0)
-    return s * s * s * (10 - 15 * s + 6 * s * s)
 
 
 def sway_at(t):

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "test" / "support"))
+sys.path[:0] = [str(ROOT / "test" / "support"), str(ROOT / "scripts" / "support")]
 import gripper_motions  # noqa: E402
 import kinematics  # noqa: E402
 from scene_runs import execute, world  # noqa: E402

@@ -1,8 +1,12 @@
 """Motions of the TX90 arm with the PR2 gripper, as trajectories for blem_sim_run: grasping from above, and stirring."""
 import math
+import sys
 
-from kinematics import Tree
-from shared_data import shared_data
+from shared_data import SOURCE_DIR, shared_data
+
+sys.path.insert(0, str(SOURCE_DIR / "scripts" / "support"))
+from kinematics import Tree  # noqa: E402
+from trajectory_file import smooth  # noqa: E402
 
 URDF = "robots/klampt/tx90pr2/tx90pr2.urdf"
 ARM = ["Link_%d_joint" % k for k in range(1, 7)]
@@ -14,12 +18,6 @@ FREE = 0.034       # [m] from the hand's origin to where an object 8 cm wide wou
 OPEN = 0.85        # [rad] pads some 125 mm apart
 SQUEEZE = 0.40     # [rad] past the touch of an 8 cm object: the motor is at its limit
 ROW_STEP = 0.01    # [s] between the rows of a trajectory
-
-
-def smooth(t, start, end):
-    """0 before start, 1 after end, in between a polynomial of degree 5 without a jump in acceleration."""
-    s = min(max((t - start) / (end - start), 0.0), 1.0)
-    return s * s * s * (10 - 15 * s + 6 * s * s)
 
 
 def hand_pose(xyz, closing_angle):

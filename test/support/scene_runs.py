@@ -74,16 +74,3 @@ def read_motion(name):
             if not rows or float(row["time"]) > rows[-1][0]:
                 rows.append((float(row["time"]), {key: float(value) for key, value in row.items() if key.endswith("_joint")}))
     return rows
-
-
-def write_trajectory(path, rows):
-    """A list of (time, positions by joint) for --trajectory, with velocities from differences: the run goes along cubics."""
-    names = list(rows[0][1])
-    with open(str(path), "w") as stream:
-        table = csv.writer(stream)
-        table.writerow(["time"] + names + [name + "_vel" for name in names])
-        for k, (time, positions) in enumerate(rows):
-            (t0, before), (t1, after) = rows[max(0, k - 1)], rows[min(len(rows) - 1, k + 1)]
-            still = k in (0, len(rows) - 1)
-            rates = [0.0 if still else (after[name] - before[name]) / (t1 - t0) for name in names]
-            table.writerow(["%.6f" % time] + ["%.9f" % positions[name] for name in names] + ["%.9f" % rate for rate in rates])

@@ -34,23 +34,24 @@ class InputFiles:
 
     @functools.lru_cache(maxsize=None)
     def digest_of_named(self, name, base):
-        path = self.resolved(name, base)
+        path = resolved(name, base, self.sweep.packages)
         digests = [name, digest_of_file(path)]
         if path and path.endswith((".urdf", ".xml")) and digests[1]:
             with open(path, encoding="utf-8", errors="replace") as stream:
                 meshes = sorted(set(IN_URDF.findall(stream.read())))
-            digests += [(mesh, digest_of_file(self.resolved(mesh, str(pathlib.Path(path).parent)))) for mesh in meshes]
+            digests += [(mesh, digest_of_file(resolved(mesh, str(pathlib.Path(path).parent), self.sweep.packages))) for mesh in meshes]
         return digests
 
-    def resolved(self, name, base):
-        """The file of a name or URI, or None."""
-        if name.startswith("file://"):
-            return name[len("file://"):]
-        if not name.startswith("package://"):
-            return str(pathlib.Path(base) / name)
-        package, _, rest = name[len("package://"):].partition("/")
-        folder = self.sweep.packages.get(package) or package_folder(package)
-        return str(pathlib.Path(folder) / rest) if folder else None
+
+def resolved(name, base, packages):
+    """The file of a name or URI, or None. @param base folder of the file that names it @param packages {name: folder} beside ROS_PACKAGE_PATH"""
+    if name.startswith("file://"):
+        return name[len("file://"):]
+    if not name.startswith("package://"):
+        return str(pathlib.Path(base) / name)
+    package, _, rest = name[len("package://"):].partition("/")
+    folder = packages.get(package) or package_folder(package)
+    return str(pathlib.Path(folder) / rest) if folder else None
 
 
 def named_files(value):

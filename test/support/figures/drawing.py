@@ -7,9 +7,11 @@ import sys
 
 import yaml
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from scene_runs import program, write_trajectory  # noqa: E402
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "test" / "support"), str(ROOT / "scripts" / "support")]
+from scene_runs import program  # noqa: E402
 from shared_data import package_options  # noqa: E402
+from trajectory_file import write_trajectory  # noqa: E402
 
 
 def viewer():

@@ -3,12 +3,14 @@ import math
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+sys.path[:0] = [str(ROOT / "test" / "support"), str(ROOT / "scripts" / "support")]
 import gripper_motions  # noqa: E402
 import kinematics  # noqa: E402
 from foot_forces import FootForces, pose_in  # noqa: E402
-from scene_runs import read_motion, simulate, world, write_trajectory  # noqa: E402
+from scene_runs import read_motion, simulate, world  # noqa: E402
 from shared_data import shared_data  # noqa: E402
+from trajectory_file import write_trajectory  # noqa: E402
 
 
 def unreliable(report):

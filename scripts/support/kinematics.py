@@ -104,6 +104,9 @@ class _Joint:
         self.origin, self.axis = _origin(element), _numbers(element.find("axis"), "xyz", (1.0, 0.0, 0.0))
         limit = element.find("limit")
         self.lower, self.upper = (_numbers(limit, side, (way,))[0] for side, way in (("lower", -math.inf), ("upper", math.inf)))
+        self.velocity, self.effort = (_numbers(limit, bound, (math.inf,))[0] for bound in ("velocity", "effort"))  # most that it may
+        soft = element.find("safety_controller")
+        self.soft_lower, self.soft_upper = (_numbers(soft, "soft_%s_limit" % side, (0.0,))[0] for side in ("lower", "upper"))
         mimic = element.find("mimic")
         self.mimics = None
         if mimic is not None:

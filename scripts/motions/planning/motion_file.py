@@ -1,0 +1,193 @@
+"""MOTION.yaml: contacts, margins and phases of a motion; all of it looked at before anything is planned. docs/motions.md is its manual."""
+import collections
+
+import numpy as np
+from sweeping.checked_yaml import Field, read_yaml
+
+KEYS = ("robot", "rate", "margin", "speed", "effort", "friction", "shift_duration", "body", "contacts", "holding", "start", "phases")
+CONTACT_KEYS = ("link", "points", "normal", "normals", "friction", "force", "keeps")
+START_KEYS = ("contacts", "com", "height", "rpy", "joints")
+PHASE_KEYS = ("name", "duration", "com", "body", "move", "release", "joints")
+KEEPS = ("pose", "position")
+FASTEST_RATE, LONGEST_PHASE, MOST_PHASES, MOST_POINTS = 1000, 3600, 1000, 64
+
+# Where a link may touch: points and outward normals of the environment in the link's frame; friction; most normal force [N] per point, None for the
+# robot's weight; keeps_turn: whether a held link may not turn. Its middle is that of its points.
+Contact = collections.namedtuple("Contact", "name link points normals friction force keeps_turn middle")
+# One target of the centre of mass: kind is "over" (value: names of contacts), "xy" or "by" (value: [m]).
+CentreTarget = collections.namedtuple("CentreTarget", "kind value")
+# One target of the body: kind is "height" or "rise", or None; rpy or None.
+BodyTarget = collections.namedtuple("BodyTarget", "kind height rpy")
+# One way of a contact: to: middle (xyz) or None, else by: [m]; rpy of the link or None; lift: vector [m]; whether it holds at the end.
+Way = collections.namedtuple("Way", "to by rpy lift lands")
+Start = collections.namedtuple("Start", "contacts com body joints")
+Phase = collections.namedtuple("Phase", "path name duration com body ways release joints")
+
+
+class Motion:
+    """What MOTION.yaml says. file names it in refusals."""
+
+    def __init__(self, file):
+        self.file = str(file)
+        root = Field(self.file, "", read_yaml(file))
+        root.map(KEYS)
+        for key in ("contacts", "phases"):
+            if key not in root.value:
+                root.refuse("'%s' is missing; write it as docs/motions.md shows" % key)
+        self.robot = optional(root, "robot", Field.text)
+        self.rate = within(root, "rate", 50, 1, FASTEST_RATE)
+        self.margin = within(root, "margin", 0.015, 0, 1)
+        self.speed = within(root, "speed", 0.5, 0.01, 1)
+        self.effort = within(root, "effort", 1.0, 0.01, 1)
+        self.friction = within(root, "friction", 0.5, 0.01, 10)
+        self.shift_duration = within(root, "shift_duration", 2.0, 0.01, LONGEST_PHASE)
+        self.body = optional(root, "body", Field.text)
+        contacts = root.below("contacts")
+        self.contacts = {name: read_contact(name, contacts.below(name), self.friction) for name in contacts.map()}
+        if not self.contacts:
+            contacts.refuse("is empty; name at least one contact")
+        self.holding = names_in(root.below("holding"), self.contacts) if "holding" in root.value else sorted(self.contacts)
+        self.start = read_start(root.below("start"), self.contacts) if "start" in root.value else None
+        self.phases = [read_phase(item, k, self.contacts) for k, item in enumerate(root.below("phases").items())]
+        if not 0 < len(self.phases) <= MOST_PHASES:
+            root.below("phases").refuse("has %d items; write 1 to %d" % (len(self.phases), MOST_PHASES))
+
+    def field(self, path, value):
+        """A value that was read, so that its refusal names file and field."""
+        return Field(self.file, path, value)
+
+
+def optional(field, key, read, default=None):
+    return read(field.below(key)) if key in field.value else default
+
+
+def within(field, key, default, least, most):
+    """A number between two bounds, or the default where the key is left out."""
+    if key not in field.value:
+        return default
+    value = field.below(key).number(least)
+    if value > most:
+        field.below(key).refuse("%s is more than %g; write a smaller number" % (field.below(key).shown(), most))
+    return value
+
+
+def numbers(field, length):
+    """A list of so many finite numbers, none beyond 1 km."""
+    for item in field.items():
+        if abs(item.number()) > 1000:
+            item.refuse("%s is beyond 1000; write m and rad" % item.shown())
+    return np.array(field.list(length), float)
+
+
+def names_in(field, known):
+    names = [item.choice(known) for item in field.items()]
+    for k, name in enumerate(names):
+        if name in names[:k]:
+            field.refuse("'%s' is there twice; name each once" % name)
+    return names
+
+
+def joint_targets(field):
+    return {name: field.below(name).number() for name in field.map()}
+
+
+def unit(field):
+    vector = numbers(field, 3)
+    if np.linalg.norm(vector) < 1e-6:
+        field.refuse("%s has no direction; write [0, 0, 1]" % field.shown())
+    return vector / np.linalg.norm(vector)
+
+
+def read_contact(name, field, friction):
+    field.map(CONTACT_KEYS)
+    for key in ("link", "points"):
+        if key not in field.value:
+            field.refuse("'%s' is missing; write link: NAME and points: [[x, y, z], ...] in its frame" % key)
+    points = np.array([numbers(item, 3) for item in field.below("points").items()])
+    if not 0 < len(points) <= MOST_POINTS:
+        field.below("points").refuse("has %d items; write 1 to %d" % (len(points), MOST_POINTS))
+    if "normal" in field.value and "normals" in field.value:
+        field.refuse("'normal' and 'normals' exclude each other; leave one of them out")
+    if "normals" in field.value:
+        field.below("normals").list(len(points))
+        normals = np.array([unit(item) for item in field.below("normals").items()])
+    else:
+        normals = np.array([optional(field, "normal", unit, np.array([0.0, 0.0, 1.0]))] * len(points))
+    keeps = field.below("keeps").choice(KEEPS) if "keeps" in field.value else "pose"
+    return Contact(name, field.below("link").text(), points, normals, within(field, "friction", friction, 0.01, 10),
+                   within(field, "force", None, 1e-3, 1e6), keeps == "pose", points.mean(axis=0))
+
+
+def read_start(field, contacts):
+    field.map(START_KEYS)
+    stands = {}
+    if "contacts" in field.value:
+        below = field.below("contacts")
+        for name in below.map(contacts):
+            stands[name] = read_way(below.below(name), ("xyz", "rpy"))
+    return Start(stands, optional(field, "com", lambda each: read_centre(each, contacts)), read_body(field), optional(field, "joints", joint_targets, {}))
+
+
+def read_centre(field, contacts):
+    """A target of the centre of mass."""
+    field.map(("over", "xy", "by"))
+    if len(field.value) != 1:
+        field.refuse("has %d keys; write over: [CONTACT], xy: [x, y] or by: [x, y]" % len(field.value))
+    (kind,) = field.value
+    below = field.below(kind)
+    value = names_in(below, contacts) if kind == "over" else numbers(below, 2)
+    if kind == "over" and not value:
+        below.refuse("names no contact; write one")
+    return CentreTarget(kind, value)
+
+
+def read_body(field):
+    """Height and orientation among a map's keys, or None."""
+    if "height" in field.value and "rise" in field.value:
+        field.refuse("'height' and 'rise' exclude each other; leave one of them out")
+    kind = next((key for key in ("height", "rise") if key in field.value), None)
+    rpy = optional(field, "rpy", lambda each: numbers(each, 3))
+    if kind is None and rpy is None:
+        return None
+    return BodyTarget(kind, field.below(kind).number() if kind else None, rpy)
+
+
+def read_way(field, known=("to", "by", "rpy", "lift", "lands")):
+    """Where a contact goes. In a start the key is xyz, and there is no way."""
+    field.map(known)
+    goal = "to" if "to" in known else "xyz"
+    if goal in field.value and "by" in field.value:
+        field.refuse("'to' and 'by' exclude each other; leave one of them out")
+    if goal == "xyz" and goal not in field.value:
+        field.refuse("'xyz' is missing; write xyz: [x, y, z] of the contact's middle")
+    to = optional(field, goal, lambda each: numbers(each, 3))
+    by = optional(field, "by", lambda each: numbers(each, 3), np.zeros(3))
+    rpy = optional(field, "rpy", lambda each: numbers(each, 3))
+    lift = np.zeros(3)
+    if "lift" in field.value:
+        below = field.below("lift")
+        lift = numbers(below, 3) if isinstance(below.value, list) else np.array([0.0, 0.0, below.number(0)])
+    return Way(to, by, rpy, lift, field.below("lands").flag() if "lands" in field.value else True)
+
+
+def read_phase(field, number, contacts):
+    field.map(PHASE_KEYS)
+    if "duration" not in field.value:
+        field.refuse("'duration' is missing; write it in seconds")
+    duration = within(field, "duration", None, 1e-3, LONGEST_PHASE)
+    body = None
+    if "body" in field.value:
+        below = field.below("body")
+        below.map(("height", "rise", "rpy"))
+        body = read_body(below)
+    ways = {}
+    if "move" in field.value:
+        below = field.below("move")
+        ways = {name: read_way(below.below(name)) for name in below.map(contacts)}
+    release = names_in(field.below("release"), contacts) if "release" in field.value else []
+    for name in release:
+        if name in ways:
+            field.below("release").refuse("'%s' is moved in this phase, too; leave it out of one" % name)
+    name = field.below("name").text() if "name" in field.value else "phase %d" % (number + 1)
+    return Phase(field.path, name, duration, optional(field, "com", lambda each: read_centre(each, contacts)), body, ways, release,
+                 optional(field, "joints", joint_targets, {}))

@@ -1,0 +1,87 @@
+"""What a phase asks of the robot at each moment, as tasks for inverse kinematics: contacts and centre of mass, then the body, then the posture."""
+import collections
+
+import numpy as np
+from trajectory_file import smooth
+
+from planning.robot_model import ROOT_COORDINATES, rotation_vector, turn
+
+# Shares of a phase: a contact that is lifted rises until RISEN, travels between LEAVES and ARRIVES, and comes down from SINKS on.
+RISEN, LEAVES, ARRIVES, SINKS = 0.35, 0.2, 0.8, 0.65
+
+# Largest errors of the first rank: what it is of (a contact's name, or CENTRE), [m] and [rad].
+Residual = collections.namedtuple("Residual", "of metres radians")
+CENTRE = "centre of mass"
+
+
+class ContactWay:
+    """A contact from one frame to another. A frame is (rotation of its link, position of its middle)."""
+
+    def __init__(self, start, end, lift):
+        self.start, self.end, self.lift = start, end, lift
+        self.turned = rotation_vector(end[0] @ start[0].T)
+
+    def at(self, share):
+        is_lifted = np.any(self.lift)
+        along = smooth(share, LEAVES, ARRIVES) if is_lifted else smooth(share, 0, 1)
+        raised = smooth(share, 0, RISEN) - smooth(share, SINKS, 1)
+        return turn(along * self.turned) @ self.start[0], self.start[1] + along * (self.end[1] - self.start[1]) + raised * self.lift
+
+
+def frame_of(placed, contact):
+    rotation, position = placed.link(contact.link)
+    return rotation, position + rotation @ contact.middle
+
+
+class Between:
+    """A vector that goes smoothly from one value to another."""
+
+    def __init__(self, start, end):
+        self.start, self.end = np.asarray(start, float), np.asarray(end, float)
+
+    def at(self, share):
+        return self.start + smooth(share, 0, 1) * (self.end - self.start)
+
+
+class PhaseTasks:
+    """Tasks of one phase. ways: [(Contact, ContactWay)]; centre: Between of (x, y), or None; body: (link, Between of the height, way of its
+    orientation as a ContactWay), or None; posture: Between of the joints' positions that the rest tends to; free: coordinates that may change."""
+
+    def __init__(self, ways, centre, body, posture, free):
+        self.ways, self.centre, self.body, self.posture, self.free = ways, centre, body, posture, free
+
+    def first_rank(self, placed, share):
+        """[(of, Jacobian, error)] of the contacts and the centre of mass."""
+        rows = []
+        for contact, way in self.ways:
+            rotation, middle = way.at(share)
+            is_rotation, is_middle = frame_of(placed, contact)
+            jacobian, error = placed.point_jacobian(contact.link, is_middle), np.append(middle - is_middle, rotation_vector(rotation @ is_rotation.T))
+            kept = 6 if contact.keeps_turn else 3
+            rows.append((contact.name, jacobian[:kept], error[:kept]))
+        if self.centre is not None:
+            rows.append((CENTRE, placed.centre_jacobian()[:2], self.centre.at(share) - placed.centre_of_mass[:2]))
+        return rows
+
+    def second_rank(self, placed, share):
+        """(Jacobian, error) of the body: height and orientation."""
+        if self.body is None:
+            return np.zeros((0, len(self.free))), np.zeros(0)
+        link, height, way = self.body
+        rotation, position = placed.link(link)
+        jacobian = placed.point_jacobian(link, position)[2:]
+        return jacobian, np.append(height.at(share) - position[2], rotation_vector(way.at(share)[0] @ rotation.T))
+
+    def ranks(self, placed, share):
+        """All tasks, for inverse_kinematics.reach."""
+        first = self.first_rank(placed, share)
+        count = len(self.free)
+        jacobian = np.vstack([np.zeros((0, count))] + [rows for _, rows, _ in first])
+        error = np.concatenate([np.zeros(0)] + [each for _, _, each in first])
+        posture = np.eye(count)[ROOT_COORDINATES:], self.posture.at(share) - placed.posture.joints
+        return [(jacobian, error), self.second_rank(placed, share), posture]
+
+    def residuals(self, placed, share):
+        """[Residual] of the first rank."""
+        return [Residual(of, float(np.abs(error[:3]).max()), float(np.abs(error[3:]).max()) if len(error) > 3 else 0.0)
+                for of, _, error in self.first_rank(placed, share)]
