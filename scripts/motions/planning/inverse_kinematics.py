@@ -47,13 +47,13 @@ def reach(model, posture, ranks_in, free, rounds):
     """A posture near the given one that serves tasks: so many rounds for all ranks, then the first rank to the end.
 
     @param ranks_in function of a PlacedRobot: its ranks, as for ranked_step @param free coordinates that may change"""
-    for k in range(rounds + LAST_ROUNDS):
-        ranks = ranks_in(model.place(posture))
-        step = bounded_step(model, posture, ranks if k < rounds else ranks[:1], free)
-        posture = posture.moved(step)
-        posture.joints = np.clip(posture.joints, model.lower, model.upper)
-        if np.abs(step).max() < SMALL_STEP:
-            break
+    for count, most in ((None, rounds), (1, LAST_ROUNDS)):
+        for _ in range(most):
+            step = bounded_step(model, posture, ranks_in(model.place(posture))[:count], free)
+            posture = posture.moved(step)
+            posture.joints = np.clip(posture.joints, model.lower, model.upper)
+            if np.abs(step).max() < SMALL_STEP:
+                break
     return posture
 
 

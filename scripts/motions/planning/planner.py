@@ -223,10 +223,10 @@ class Planner:
     # -- refusals
 
     def check_reached(self, tasks, placed, share, phase):
-        residuals = tasks.residuals(placed, share)
-        worst = max(residuals, key=lambda each: max(each.metres / REACHED_M, each.radians / REACHED_RAD), default=None)
-        if worst is None or (worst.metres <= REACHED_M and worst.radians <= REACHED_RAD):
+        missed = [each for each in tasks.residuals(placed, share) if each.metres > REACHED_M or each.radians > REACHED_RAD]
+        if not missed:
             return
+        worst = max(missed, key=lambda each: (each.of in phase.ways, each.metres + each.radians))
         at = self.limits_met([placed])
         off = "%.1f mm and %.3f rad off at %d %% of the phase" % (1e3 * worst.metres, worst.radians, round(100 * share))
         if worst.of == CENTRE:

@@ -1,0 +1,76 @@
+"""A folder in which scripts/plan_motion plans, and blem_sim_run (environment BLEM_SIM_RUN) plays what it planned."""
+import copy
+import csv
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("motions", "sweep", "support")]
+WORLD = ROOT / "config" / "motions" / "humanoid_on_plane.yaml"
+STEPS, SQUAT = [yaml.safe_load((ROOT / "config" / "motions" / name).read_text()) for name in ("humanoid_steps.yaml", "humanoid_squat.yaml")]
+
+
+class MotionCase:
+    """Calls of the programs in a folder of their own."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def write(self, name, value):
+        (self.folder / name).write_text(value if isinstance(value, str) else yaml.safe_dump(value, sort_keys=False))
+        return self.folder / name
+
+    def call(self, config, motion, *options):
+        command = [str(ROOT / "scripts" / "plan_motion"), str(config), str(motion), "--out", str(self.folder / "motion.csv"),
+                   "--report", str(self.folder / "plan.json")] + [str(option) for option in options]
+        return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=300, cwd=str(self.folder))
+
+    def plan(self, config, motion, *options):
+        """The report of a plan that must succeed."""
+        done = self.call(config, self.write("motion.yaml", motion), *options)
+        assert done.returncode == 0, done.stderr
+        return json.loads((self.folder / "plan.json").read_text())
+
+    def refusal(self, config, motion, *options):
+        """The one line of a plan that must be refused."""
+        done = self.call(config, self.write("motion.yaml", motion), *options)
+        assert done.returncode == 2, done.stdout + done.stderr
+        assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+        assert not (self.folder / "motion.csv").exists()
+        return done.stderr.strip()
+
+    def rows(self):
+        """The trajectory: names of its columns and rows of numbers."""
+        with open(str(self.folder / "motion.csv")) as stream:
+            rows = list(csv.reader(stream))
+        return rows[0], [[float(cell) for cell in row] for row in rows[1:]]
+
+    def play(self, config, duration, *options):
+        """The report of the trajectory's run."""
+        program = os.environ.get("BLEM_SIM_RUN")
+        if not program:
+            pytest.skip("BLEM_SIM_RUN does not name a built blem_sim_run; run by scripts/test")
+        report = self.folder / "run.json"
+        command = [program, str(config), "--duration", str(duration), "--trajectory", str(self.folder / "motion.csv"), "--report", str(report),
+                   "--package", "blem_sim=%s" % ROOT] + list(options)
+        subprocess.run(command, check=True, timeout=300)
+        return json.loads(report.read_text())
+
+
+def changed(motion, **keys):
+    """A copy of a motion with other keys; None leaves one out."""
+    said = dict(copy.deepcopy(motion), **keys)
+    return {key: value for key, value in said.items() if value is not None}
+
+
+def off(body, planned):
+    """Distance [m] and turn [rad] between a body of a run's report and a planned pose."""
+    dot = abs(sum(a * b for a, b in zip(body["quat_xyzw"], planned["quat_xyzw"])))
+    return math.dist(body["xyz"], planned["xyz"]), 2 * math.acos(min(1.0, dot))

@@ -1,0 +1,81 @@
+"""Motions that scripts/plan_motion plans: within their limits, and in the simulator the robot does not fall and ends where it was planned to."""
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+from motion_case import ROOT, SQUAT, STEPS, WORLD, changed, off
+
+NEAR, LITTLE = 0.002, 0.002  # [m], [rad] from the plan at the end
+
+
+def limits():
+    robot = ElementTree.parse(str(ROOT / "urdf" / "blem_humanoid.urdf")).getroot()
+    return {joint.get("name"): {key: float(joint.find("limit").get(key)) for key in ("lower", "upper", "velocity")}
+            for joint in robot.findall("joint") if joint.get("type") == "revolute"}
+
+
+def ends_as_planned(case, plan, links):
+    """Plays the trajectory and compares the robot's links at the end."""
+    report = case.play(WORLD, plan["duration_s"] + 1.0)
+    end = plan["phases"][-1]["end"]
+    for bit in ("CONTACT_UNRELIABLE", "SOLVER_TROUBLE", "EFFORT_SATURATED"):
+        assert report["status"][bit] == 0, (bit, report["status"])
+    for link, pose in [("pelvis", end["root"])] + [(links[name], pose) for name, pose in end["links"].items()]:
+        distance, turn = off(report["bodies"]["humanoid::" + link], pose)
+        assert distance < NEAR and turn < LITTLE, (link, distance, turn)
+
+
+@pytest.mark.parametrize("motion, phases", [(STEPS, 10), (SQUAT, 5)], ids=["steps", "squat"])
+def test_humanoid_does_it(case, motion, phases):
+    plan = case.plan(WORLD, motion)
+    assert len(plan["phases"]) == phases
+    for phase in plan["phases"]:
+        assert phase["margin_m"] >= motion["margin"] and phase["residual"]["m"] < 1e-4 and phase["residual"]["rad"] < 1e-4, phase
+        assert phase["speed"]["share"] <= 0.5 and phase["effort"]["share"] < 1, phase
+    ends_as_planned(case, plan, {"left": "left_foot", "right": "right_foot"})
+
+
+def test_feet_go_where_they_are_told(case):
+    plan = case.plan(WORLD, STEPS)
+    start, end = plan["start"]["links"], plan["phases"][-1]["end"]["links"]
+    forward = [end[name]["xyz"][0] - start[name]["xyz"][0] for name in ("left", "right")]
+    assert forward[1] == pytest.approx(0.24, abs=1e-6)
+    # Turned by 0.15 rad about its sole's middle, 3 cm before the ankle.
+    assert forward[0] == pytest.approx(0.24 + 0.03 * (1 - 0.98877), abs=1e-4)
+    assert end["left"]["xyz"][2] == pytest.approx(start["left"]["xyz"][2], abs=1e-6)
+    squat = case.plan(WORLD, SQUAT)
+    assert squat["phases"][1]["end"]["root"]["xyz"][2] == pytest.approx(squat["start"]["root"]["xyz"][2] - 0.2, abs=1e-3)
+
+
+def test_the_trajectory_keeps_positions_and_speeds_within_limits(case):
+    plan = case.plan(WORLD, changed(SQUAT, speed=0.1))
+    assert plan["duration_s"] > 8.2, "phases of 8 s become longer at a tenth of the joints' speed"
+    names, rows = case.rows()
+    assert names[0] == "time" and len(rows) == round(plan["duration_s"] * 50) + 1
+    for joint, limit in limits().items():
+        positions, rates = [[row[names.index(name)] for row in rows] for name in (joint, joint + "_vel")]
+        assert limit["lower"] <= min(positions) and max(positions) <= limit["upper"]
+        assert max(map(abs, rates)) <= 0.1001 * limit["velocity"]
+        for before, after, rate in zip(positions, positions[2:], rates[1:]):
+            assert abs((after - before) * 25 - rate) < 1e-6
+        assert rates[0] == rates[-1] == 0
+
+
+def test_a_start_is_found_and_written(case):
+    start = {"contacts": {"left": {"xyz": [0.5, 0.12, 0.0025], "rpy": [0, 0, 0]}, "right": {"xyz": [0.5, -0.12, 0.0025], "rpy": [0, 0, 0]}},
+             "com": {"over": ["left", "right"]}, "height": 0.57, "rpy": [0, 0, 0], "joints": {"left_elbow": -1.0}}
+    plan = case.plan(WORLD, changed(SQUAT, start=start, phases=[{"duration": 1}]), "--config-out", case.folder / "started.yaml")
+    at = plan["start"]
+    assert at["root"]["xyz"][2] == pytest.approx(0.57, abs=1e-3) and at["com"][0] == pytest.approx(0.5, abs=1e-4)
+    report = case.play(case.folder / "started.yaml", 1.0)
+    for link, pose in (("pelvis", at["root"]), ("left_foot", at["links"]["left"])):
+        distance, turn = off(report["bodies"]["humanoid::" + link], pose)
+        assert distance < NEAR and turn < LITTLE, link
+    assert report["joints"]["humanoid::left_elbow"]["position"] == pytest.approx(-1.0, abs=2e-3)
+
+
+def test_the_same_plan_has_the_same_bytes(case):
+    motion = changed(STEPS, phases=STEPS["phases"][:2])
+    case.plan(WORLD, motion)
+    first = (case.folder / "motion.csv").read_bytes()
+    case.plan(WORLD, motion)
+    assert (case.folder / "motion.csv").read_bytes() == first
