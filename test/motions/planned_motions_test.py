@@ -2,9 +2,17 @@
 import xml.etree.ElementTree as ElementTree
 
 import pytest
-from motion_case import ROOT, SQUAT, STEPS, WORLD, changed, off
+import yaml
+from motion_case import ROOT, SQUAT, STEPS, WORLD, MotionCase, changed, off
 
 NEAR, LITTLE = 0.002, 0.002  # [m], [rad] from the plan at the end
+
+
+@pytest.fixture(scope="module")
+def planned(tmp_path_factory):
+    """{name: (case, report)} of the repository's motions on a plane, each planned once."""
+    cases = {name: MotionCase(tmp_path_factory.mktemp(name)) for name in ("steps", "squat")}
+    return {name: (case, case.plan(WORLD, {"steps": STEPS, "squat": SQUAT}[name])) for name, case in cases.items()}
 
 
 def limits():
@@ -24,25 +32,25 @@ def ends_as_planned(case, plan, links):
         assert distance < NEAR and turn < LITTLE, (link, distance, turn)
 
 
-@pytest.mark.parametrize("motion, phases", [(STEPS, 10), (SQUAT, 5)], ids=["steps", "squat"])
-def test_humanoid_does_it(case, motion, phases):
-    plan = case.plan(WORLD, motion)
+@pytest.mark.parametrize("name, phases", [("steps", 10), ("squat", 5)])
+def test_humanoid_does_it(planned, name, phases):
+    case, plan = planned[name]
     assert len(plan["phases"]) == phases
     for phase in plan["phases"]:
-        assert phase["margin_m"] >= motion["margin"] and phase["residual"]["m"] < 1e-4 and phase["residual"]["rad"] < 1e-4, phase
+        assert phase["margin_m"] >= 0.02 and phase["residual"]["m"] < 1e-4 and phase["residual"]["rad"] < 1e-4, phase
         assert phase["speed"]["share"] <= 0.5 and phase["effort"]["share"] < 1, phase
     ends_as_planned(case, plan, {"left": "left_foot", "right": "right_foot"})
 
 
-def test_feet_go_where_they_are_told(case):
-    plan = case.plan(WORLD, STEPS)
+def test_feet_go_where_they_are_told(planned):
+    _, plan = planned["steps"]
     start, end = plan["start"]["links"], plan["phases"][-1]["end"]["links"]
     forward = [end[name]["xyz"][0] - start[name]["xyz"][0] for name in ("left", "right")]
     assert forward[1] == pytest.approx(0.24, abs=1e-6)
     # Turned by 0.15 rad about its sole's middle, 3 cm before the ankle.
     assert forward[0] == pytest.approx(0.24 + 0.03 * (1 - 0.98877), abs=1e-4)
     assert end["left"]["xyz"][2] == pytest.approx(start["left"]["xyz"][2], abs=1e-6)
-    squat = case.plan(WORLD, SQUAT)
+    _, squat = planned["squat"]
     assert squat["phases"][1]["end"]["root"]["xyz"][2] == pytest.approx(squat["start"]["root"]["xyz"][2] - 0.2, abs=1e-3)
 
 
@@ -58,6 +66,21 @@ def test_the_trajectory_keeps_positions_and_speeds_within_limits(case):
         for before, after, rate in zip(positions, positions[2:], rates[1:]):
             assert abs((after - before) * 25 - rate) < 1e-6
         assert rates[0] == rates[-1] == 0
+
+
+def test_hands_on_a_wall_hold_what_feet_alone_do_not(case):
+    """The centre of mass stays beyond the toes, where feet alone cannot hold it."""
+    motion = yaml.safe_load((ROOT / "config" / "motions" / "humanoid_leans.yaml").read_text())
+    plan = case.plan(ROOT / "config" / "motions" / "humanoid_at_wall.yaml", motion)
+    alone, leaning = plan["phases"][0], plan["phases"][2]
+    toes = max(x for x, _ in alone["support"])
+    assert leaning["end"]["com"][0] > toes + 0.015 and leaning["margin_m"] > motion["margin"]
+    until = sum(phase["duration_s"] for phase in plan["phases"][:3])
+    at_wall = case.play(ROOT / "config" / "motions" / "humanoid_at_wall.yaml", until)
+    distance, turn = off(at_wall["bodies"]["humanoid::pelvis"], leaning["end"]["root"])
+    assert distance < 0.005 and turn < 0.01
+    without = case.play(WORLD, until)
+    assert off(without["bodies"]["humanoid::pelvis"], leaning["end"]["root"])[1] > 0.5, "it falls where there is no wall"
 
 
 def test_a_start_is_found_and_written(case):

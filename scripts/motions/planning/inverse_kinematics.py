@@ -5,7 +5,7 @@ from planning.robot_model import ROOT_COORDINATES
 
 # Squares of the damping of singular values by rank: a constant, and what the length of the error adds, since a task that stays unserved would make
 # steps leap where it has little way left [Sugihara 2011].
-DAMPING = ((1e-6, 0.0), (1e-3, 1.0), (0.1, 0.3))
+DAMPING = ((1e-6, 0.0), (1e-3, 2.0), (0.1, 0.3))
 KEPT = 1e-3          # singular value from which on a direction belongs to its rank, and lower ones leave it alone
 LONGEST_STEP = (0.2, 0.05, 0.05)  # [m, rad] of a coordinate in one round, by rank
 SMALL_STEP = 1e-7    # [m, rad] at which the descent ends; what is left is of the order of its square

@@ -5,15 +5,15 @@ import numpy as np
 from sweeping.checked_yaml import Field, read_yaml
 
 KEYS = ("robot", "rate", "margin", "speed", "effort", "friction", "shift_duration", "body", "contacts", "holding", "start", "phases")
-CONTACT_KEYS = ("link", "points", "normal", "normals", "friction", "force", "keeps")
+CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "friction", "force", "keeps")
 START_KEYS = ("contacts", "com", "height", "rpy", "joints")
 PHASE_KEYS = ("name", "duration", "com", "body", "move", "release", "joints")
 KEEPS = ("pose", "position")
 FASTEST_RATE, LONGEST_PHASE, MOST_PHASES, MOST_POINTS = 1000, 3600, 1000, 64
 
-# Where a link may touch: points and outward normals of the environment in the link's frame; friction; most normal force [N] per point, None for the
-# robot's weight; keeps_turn: whether a held link may not turn. Its middle is that of its points.
-Contact = collections.namedtuple("Contact", "name link points normals friction force keeps_turn middle")
+# Where a link may touch: points in the link's frame; outward normals of the environment, in the link's frame or, if `facing`, in the world; friction;
+# most normal force [N] per point, None for the robot's weight; keeps_turn: whether a held link may not turn. Its middle is that of its points.
+Contact = collections.namedtuple("Contact", "name link points normals facing friction force keeps_turn middle")
 # One target of the centre of mass: kind is "over" (value: names of contacts), "xy" or "by" (value: [m]).
 CentreTarget = collections.namedtuple("CentreTarget", "kind value")
 # One target of the body: kind is "height" or "rise", or None; rpy or None.
@@ -106,16 +106,20 @@ def read_contact(name, field, friction):
     points = np.array([numbers(item, 3) for item in field.below("points").items()])
     if not 0 < len(points) <= MOST_POINTS:
         field.below("points").refuse("has %d items; write 1 to %d" % (len(points), MOST_POINTS))
-    if "normal" in field.value and "normals" in field.value:
-        field.refuse("'normal' and 'normals' exclude each other; leave one of them out")
-    if "normals" in field.value:
-        field.below("normals").list(len(points))
-        normals = np.array([unit(item) for item in field.below("normals").items()])
-    else:
-        normals = np.array([optional(field, "normal", unit, np.array([0.0, 0.0, 1.0]))] * len(points))
     keeps = field.below("keeps").choice(KEEPS) if "keeps" in field.value else "pose"
-    return Contact(name, field.below("link").text(), points, normals, within(field, "friction", friction, 0.01, 10),
+    return Contact(name, field.below("link").text(), points, read_normals(field, len(points)), "facing" in field.value, within(field, "friction", friction, 0.01, 10),
                    within(field, "force", None, 1e-3, 1e6), keeps == "pose", points.mean(axis=0))
+
+
+def read_normals(field, count):
+    """Normals of a contact's points, from one of three keys."""
+    given = [key for key in ("normal", "normals", "facing") if key in field.value]
+    if len(given) > 1:
+        field.refuse("'%s' and '%s' exclude each other; leave one of them out" % tuple(given[:2]))
+    if given == ["normals"]:
+        field.below("normals").list(count)
+        return np.array([unit(item) for item in field.below("normals").items()])
+    return np.array([unit(field.below(given[0])) if given else np.array([0.0, 0.0, 1.0])] * count)
 
 
 def read_start(field, contacts):

@@ -15,7 +15,7 @@ from planning.timing import timed
 
 REACHED_M, REACHED_RAD = 1e-4, 1e-4      # a task is kept within these
 BODY_M, BODY_RAD = 1e-3, 2e-3            # a body's target that a phase asks for is reached within these
-ROUNDS, START_ROUNDS = 3, 500            # of inverse kinematics for all ranks per sample, and to the start
+ROUNDS, START_ROUNDS = 6, 500            # of inverse kinematics for all ranks per sample, and to the start
 ROOM = 2                                 # margins that a shift before a phase leaves, where there is so much room
 EFFORT_SAMPLES = 5                       # of a phase
 
@@ -99,8 +99,9 @@ class Planner:
             contact = self.motion.contacts[name]
             rotation, middle = frame_of(placed, contact)
             share = contact.force / weight if contact.force else 1.0
-            points += [support.ContactPoint(contact.link, middle + rotation @ (point - contact.middle), rotation @ normal, contact.friction, share)
-                       for point, normal in zip(contact.points, contact.normals)]
+            normals = contact.normals if contact.facing else contact.normals @ rotation.T
+            points += [support.ContactPoint(contact.link, middle + rotation @ (point - contact.middle), normal, contact.friction, share)
+                       for point, normal in zip(contact.points, normals)]
         return points
 
     def region(self, names, phase):
