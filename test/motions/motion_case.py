@@ -13,8 +13,9 @@ import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("motions", "sweep", "support")]
-WORLD = ROOT / "config" / "motions" / "humanoid_on_plane.yaml"
-STEPS, SQUAT = [yaml.safe_load((ROOT / "config" / "motions" / name).read_text()) for name in ("humanoid_steps.yaml", "humanoid_squat.yaml")]
+MOTIONS = ROOT / "config" / "motions"
+WORLD = MOTIONS / "humanoid_on_plane.yaml"
+STEPS, SQUAT, CLIMBS, LEANS = [yaml.safe_load((MOTIONS / ("humanoid_%s.yaml" % name)).read_text()) for name in ("steps", "squat", "climbs", "leans")]
 
 
 class MotionCase:

@@ -106,10 +106,12 @@ class Planner:
 
     def region(self, names, phase):
         """Where the centre of mass may be while these hold."""
+        if not names:
+            self.refuse(phase, "nothing holds the robot; let a contact hold, or write fixed_base: true in the configuration of a robot that is fixed")
         region = support.support_region(self.points(names, self.placed))
         if len(region) < 3:
             self.refuse(phase, "no forces of %s within friction balance the robot; let more contacts hold, or correct points, normal and friction"
-                        % (", ".join(names) or "nothing"))
+                        % ", ".join(names))
         return region
 
     def middle(self, names, phase):
@@ -234,8 +236,9 @@ class Planner:
             self.refuse(phase.name, "the centre of mass cannot be brought to where it is asked, %s; %slower the body (body: {rise: -0.05}), bring the"
                         " contacts closer, or give com: xy" % (off, at))
         contact = self.motion.contacts[worst.of]
-        self.refuse(phase.name, "contact '%s' (link '%s') is out of reach, %s; %schoose a nearer target or less lift, or another height of the body"
-                    " (body: {rise: -0.05})" % (worst.of, contact.link, off, at))
+        lower = "" if self.model.fixed else ", or another height of the body (body: {rise: -0.05})"
+        self.refuse(phase.name, "contact '%s' (link '%s') is out of reach, %s; %schoose a nearer target or less lift%s"
+                    % (worst.of, contact.link, off, at, lower))
 
     def limits_met(self, placed):
         """Words about the joints that are at a limit at any of these moments."""

@@ -7,7 +7,7 @@ from trajectory_file import smooth
 from planning.robot_model import ROOT_COORDINATES, rotation_vector, turn
 
 # Shares of a phase: a contact that is lifted rises until RISEN, travels between LEAVES and ARRIVES, and comes down from SINKS on.
-RISEN, LEAVES, ARRIVES, SINKS = 0.35, 0.2, 0.8, 0.65
+RISEN, LEAVES, ARRIVES, SINKS = 0.35, 0.25, 0.75, 0.65
 
 # Largest errors of the first rank: what it is of (a contact's name, or CENTRE), [m] and [rad].
 Residual = collections.namedtuple("Residual", "of metres radians")
@@ -15,17 +15,22 @@ CENTRE = "centre of mass"
 
 
 class ContactWay:
-    """A contact from one frame to another. A frame is (rotation of its link, position of its middle)."""
+    """A contact from one frame to another, straight, or over `lift` [m, a vector] beyond the farther of both ends. A frame is (rotation of its link,
+    position of its middle)."""
 
     def __init__(self, start, end, lift):
-        self.start, self.end, self.lift = start, end, lift
+        self.start, self.end = start, end
         self.turned = rotation_vector(end[0] @ start[0].T)
+        height = float(np.linalg.norm(lift))
+        self.up = lift / height if height > 0 else lift
+        self.risen = float(self.up @ (end[1] - start[1]))  # of the end above the start, along the lift
+        self.top = max(0.0, self.risen) + height
 
     def at(self, share):
-        is_lifted = np.any(self.lift)
-        along = smooth(share, LEAVES, ARRIVES) if is_lifted else smooth(share, 0, 1)
-        raised = smooth(share, 0, RISEN) - smooth(share, SINKS, 1)
-        return turn(along * self.turned) @ self.start[0], self.start[1] + along * (self.end[1] - self.start[1]) + raised * self.lift
+        along = smooth(share, LEAVES, ARRIVES) if self.top > 0 else smooth(share, 0, 1)
+        raised = self.top * smooth(share, 0, RISEN) - (self.top - self.risen) * smooth(share, SINKS, 1)
+        beside = self.end[1] - self.start[1] - self.risen * self.up
+        return turn(along * self.turned) @ self.start[0], self.start[1] + along * beside + raised * self.up
 
 
 def frame_of(placed, contact):
