@@ -8,8 +8,10 @@ import collections
 import math
 
 import numpy as np
+import scipy
 from scipy.optimize import linprog
 
+METHOD = "highs" if tuple(map(int, scipy.__version__.split(".")[:2])) >= (1, 6) else "revised simplex"  # exact corners; Ubuntu 20.04 has 1.3
 EDGES = 8            # of a friction pyramid
 RESOLVED = 1e-4      # [m] to which the polygon is known
 MOST_CORNERS = 64
@@ -57,7 +59,8 @@ class Balance:
         costs = np.zeros(count)
         costs[-2:] = -np.asarray(direction)
         above = np.hstack([self.bounds, np.zeros((len(self.bounds), 2))])
-        found = linprog(costs, A_ub=above, b_ub=self.most, A_eq=self.equal, b_eq=self.right, bounds=[(0, None)] * (count - 2) + [(None, None)] * 2)
+        found = linprog(costs, A_ub=above, b_ub=self.most, A_eq=self.equal, b_eq=self.right, method=METHOD,
+                        bounds=[(0, None)] * (count - 2) + [(None, None)] * 2)
         return found.x[-2:] + self.middle[:2] if found.status == 0 else None
 
 
@@ -144,7 +147,7 @@ def static_effort(placed, points, gravity):
     upper = np.vstack([np.hstack([lifts[rows], columns]), np.hstack([-lifts[rows], columns]), np.hstack([above, np.zeros((len(above), 1))])])
     costs = np.append(np.zeros(count), 1.0)
     equal = {} if model.fixed else {"A_eq": np.hstack([lifts[:6], np.zeros((6, 1))]) / weight, "b_eq": held[:6] / weight}
-    found = linprog(costs, A_ub=upper, b_ub=np.concatenate([held[rows], -held[rows], most]), bounds=[(0, None)] * (count + 1), **equal)
+    found = linprog(costs, A_ub=upper, b_ub=np.concatenate([held[rows], -held[rows], most]), bounds=[(0, None)] * (count + 1), method=METHOD, **equal)
     if found.status != 0:
         return math.inf, None
     needs = np.abs(held[rows] - lifts[rows] @ found.x[:count]) / limits
