@@ -50,6 +50,7 @@ BAD = {
     "duration": (with_phases(dict(CROUCH, duration=-1)), "phases[0].duration: '-1' is less than 0.001"),
     "holding": (changed(STEPS, holding=["left", "left"]), "holding: 'left' is there twice"),
     "com": (with_phases(dict(CROUCH, com={"over": ["left"], "xy": [0, 0]})), "phases[0].com: has 2 keys"),
+    "kind": (changed(STEPS, holding=[["left"]]), "holding[0]: unknown value"),
     "list": ("[1, 2]\n", "is no map"),
     "yaml": ("a: [\n", "not YAML"),
     "robot": (changed(STEPS, robot="humanoi"), "robots: there is no 'humanoi'; the nearest known one is 'humanoid'"),
@@ -63,6 +64,11 @@ def test_bad_motions_are_refused(case, name):
     assert words in line, line
 
 
+def test_the_program_ends_with_2(case):
+    done = case.call(WORLD, case.write("motion.yaml", BAD["list"][0]))
+    assert done.returncode == 2 and done.stdout == "" and len(done.stderr.splitlines()) == 1
+
+
 def test_bad_robots_are_refused(case):
     world = yaml.safe_load(WORLD.read_text())
     assert "robots" in case.refusal(case.write("empty.yaml", {"time_step": 0.001}), STEPS)
@@ -72,5 +78,9 @@ def test_bad_robots_are_refused(case):
     assert "check_urdf" in case.refusal(case.write("bad.urdf", "<robot><joint name='a' type='fixed'/></robot>"), STEPS)
     floating = '<robot name="a"><link name="a"/><link name="b"/><joint name="j" type="floating"><parent link="a"/><child link="b"/></joint></robot>'
     assert "'j' is of type 'floating'" in case.refusal(case.write("floating.urdf", floating), STEPS)
+    far = dict(world, robots=[dict(world["robots"][0], pose={"xyz": [1e308, 0, 0]})])
+    assert "robots[0].pose.xyz" in case.refusal(case.write("far.yaml", far), STEPS)
+    weightless = '<robot name="a"><link name="left_foot"/></robot>'
+    assert "weighs nothing" in case.refusal(case.write("weightless.urdf", weightless), STEPS)
     assert "leave it out" in case.refusal(ROOT / "urdf" / "blem_humanoid.urdf", STEPS, "--config-out", "a.yaml")
     assert "--package" in case.refusal(WORLD, STEPS, "--package", "nothing")

@@ -37,6 +37,7 @@ BAD = [
     (dict(SAMPLED, parameters={"a": {"uniform": [1]}}), ["parameters.a.uniform: has 1 items; write 2"]),
     (dict(SAMPLED, parameters={"a": {"normal": [1, 0]}}), ["deviation 0 is not above 0"]),
     (dict(SAMPLED, parameters={"a": {"normal": [1, 1], "log": True}}), ["'log' does not go with 'normal'"]),
+    ({"design": ["latin"]}, ["design: unknown value"]),
     ({"design": "latn"}, ["design: unknown value 'latn'", "'latin'"]),
     ({"design": "random"}, ["'samples' is missing"]),
     ({"samples": 3}, ["samples: does not go with design: grid"]),

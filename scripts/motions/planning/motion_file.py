@@ -9,7 +9,7 @@ CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "friction", "fo
 START_KEYS = ("contacts", "com", "height", "rpy", "joints")
 PHASE_KEYS = ("name", "duration", "com", "body", "move", "release", "joints")
 KEEPS = ("pose", "position")
-FASTEST_RATE, LONGEST_PHASE, MOST_PHASES, MOST_POINTS = 1000, 3600, 1000, 64
+FASTEST_RATE, LONGEST_PHASE, MOST_PHASES, MOST_POINTS, FARTHEST = 1000, 3600, 1000, 64, 1000
 
 # Where a link may touch: points in the link's frame; outward normals of the environment, in the link's frame or, if `facing`, in the world; friction;
 # most normal force [N] per point, None for the robot's weight; keeps_turn: whether a held link may not turn. Its middle is that of its points.
@@ -74,8 +74,8 @@ def within(field, key, default, least, most):
 def numbers(field, length):
     """A list of so many finite numbers, none beyond 1 km."""
     for item in field.items():
-        if abs(item.number()) > 1000:
-            item.refuse("%s is beyond 1000; write m and rad" % item.shown())
+        if abs(item.number()) > FARTHEST:
+            item.refuse("%s is beyond %g; write m and rad" % (item.shown(), FARTHEST))
     return np.array(field.list(length), float)
 
 
@@ -153,7 +153,7 @@ def read_body(field):
     rpy = optional(field, "rpy", lambda each: numbers(each, 3))
     if kind is None and rpy is None:
         return None
-    return BodyTarget(kind, field.below(kind).number() if kind else None, rpy)
+    return BodyTarget(kind, within(field, kind, None, -FARTHEST, FARTHEST) if kind else None, rpy)
 
 
 def read_way(field, known=("to", "by", "rpy", "lift", "lands")):

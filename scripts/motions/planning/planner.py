@@ -9,13 +9,13 @@ from sweeping.checked_yaml import InputError
 from planning import support
 from planning.inverse_kinematics import joints_at_limits, reach
 from planning.motion_file import CentreTarget, Phase
-from planning.robot_model import ROOT_COORDINATES, Posture
+from planning.robot_model import ROOT_COORDINATES, Posture, rotation_vector
 from planning.tasks import CENTRE, Between, ContactWay, PhaseTasks, frame_of
 from planning.timing import timed
 
 REACHED_M, REACHED_RAD = 1e-4, 1e-4      # a task is kept within these
 BODY_M, BODY_RAD = 1e-3, 2e-3            # a body's target that a phase asks for is reached within these
-ROUNDS, START_ROUNDS = 6, 500            # of inverse kinematics for all ranks per sample, and to the start
+ROUNDS, PHASE_ROUNDS, START_ROUNDS = 6, 400, 500  # of inverse kinematics for all ranks: at least per sample and per phase; to the start
 ROOM = 2                                 # margins that a shift before a phase leaves, where there is so much room
 EFFORT_SAMPLES = 5                       # of a phase
 
@@ -213,12 +213,12 @@ class Planner:
 
     def samples(self, tasks, targets, shares, phase):
         """The robot at each of these shares of a phase."""
-        posture, placed = self.placed.posture, []
+        posture, placed, rounds = self.placed.posture, [], max(ROUNDS, PHASE_ROUNDS // len(shares))
         for share in shares:
             joints = posture.joints.copy()
             for column, (start, end) in targets.items():
                 joints[column] = Between(start, end).at(share)
-            posture = reach(self.model, Posture(posture.rotation, posture.position, joints), lambda each: tasks.ranks(each, share), tasks.free, ROUNDS)
+            posture = reach(self.model, Posture(posture.rotation, posture.position, joints), lambda each: tasks.ranks(each, share), tasks.free, rounds)
             placed.append(self.model.place(posture))
             self.check_reached(tasks, placed[-1], share, phase)
         return placed
@@ -250,8 +250,8 @@ class Planner:
         if phase.body is None:
             return
         rotation, position = self.placed.link(self.body)
-        off = abs(position[2] - self.height)
-        turned = np.linalg.norm(rotation - self.orientation)
+        off = abs(position[2] - self.height) if phase.body.kind else 0.0
+        turned = np.linalg.norm(rotation_vector(rotation @ self.orientation.T)) if phase.body.rpy is not None else 0.0
         if off > BODY_M or turned > BODY_RAD:
             self.refuse(phase.name, "the body (link '%s') ends %.1f mm and %.3f rad from its target; %sask for less, or give the phase more time"
                         % (self.body, 1e3 * off, turned, self.limits_met([self.placed])))

@@ -12,6 +12,7 @@ from sweeping.input_files import resolved
 from planning.robot_model import Posture, RobotModel
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+FARTHEST = 1e5  # [m] that a motion may be from the origin
 TYPES = ("fixed", "revolute", "continuous", "prismatic")
 
 # A robot as it starts: name in the configuration (None of a bare URDF), its place in the list, gravity [m/s^2] along -z.
@@ -51,6 +52,10 @@ def placed_robot(field, number, packages, gravity):
     tree = read_tree(field.below("urdf"), packages)
     fixed = field.below("fixed_base").flag() if "fixed_base" in field.value else tree.root == "world"
     model = RobotModel(tree, fixed, numbers_by_joint(field, "effort_limits"), numbers_by_joint(field, "velocity_limits"))
+    numbers = np.concatenate([each.ravel() for each in (model.origins, model.origin_rotations, model.axes, model.masses, model.centres)])
+    if not (np.abs(numbers) <= FARTHEST).all() or (model.masses < 0).any() or not (fixed or model.mass > 0):
+        field.below("urdf").refuse("%s has an origin, axis or mass that is no such number, or weighs nothing; check it with check_urdf"
+                                   % field.below("urdf").shown())
     rotation, position = pose_of(field)
     starts = numbers_by_joint(field, "initial_positions")
     joints = np.clip([starts.get(name, 0.0) for name in model.joint_names], model.lower, model.upper)
@@ -72,6 +77,8 @@ def pose_of(field):
         for key in pose.map(parts):
             pose.below(key).list(3)
             parts[key] = [item.number() for item in pose.below(key).items()]
+            if max(map(abs, parts[key])) > FARTHEST:
+                pose.below(key).refuse("%s is beyond %g; write m and rad" % (pose.below(key).shown(), FARTHEST))
     return from_rpy(parts["rpy"]), parts["xyz"]
 
 

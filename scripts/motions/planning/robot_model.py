@@ -24,6 +24,11 @@ def skew(v):
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
+def cross_products(a, b):
+    """Of the rows of two arrays; numpy's own takes five times as long for so few."""
+    return a[:, [1, 2, 0]] * b[:, [2, 0, 1]] - a[:, [2, 0, 1]] * b[:, [1, 2, 0]]
+
+
 def turns(axes, angles):
     """Matrices of turns about unit axes."""
     crosses = np.zeros((len(axes), 3, 3))
@@ -149,7 +154,7 @@ class PlacedRobot:
         """Six rows, velocity of a point [m] that moves with a link and the link's angular velocity, per coordinate."""
         k = self.model.links.index(link)
         moved = self.model.moves[:, k, None]
-        linear = np.where(self.model.slides[:, None], self.axes, np.cross(self.axes, point - self.positions[1:])) * moved
+        linear = np.where(self.model.slides[:, None], self.axes, cross_products(self.axes, point - self.positions[1:])) * moved
         angular = np.where(self.model.slides[:, None], 0.0, self.axes) * moved
         rows = np.zeros((6, ROOT_COORDINATES + len(self.model.joint_names)))
         rows[:3, :3], rows[:3, 3:6], rows[3:, 3:6] = np.eye(3), -skew(point - self.positions[0]), np.eye(3)
@@ -161,7 +166,7 @@ class PlacedRobot:
         model = self.model
         masses = model.moves @ model.masses
         moments = model.moves @ (model.masses[:, None] * self.centres) - masses[:, None] * self.positions[1:]
-        linear = np.where(model.slides[:, None], self.axes * masses[:, None], np.cross(self.axes, moments)) / model.mass
+        linear = np.where(model.slides[:, None], self.axes * masses[:, None], cross_products(self.axes, moments)) / model.mass
         rows = np.zeros((3, ROOT_COORDINATES + len(model.joint_names)))
         rows[:, :3], rows[:, 3:6], rows[:, 6:] = np.eye(3), -skew(self.centre_of_mass - self.positions[0]), linear.T @ model.coupling
         return rows

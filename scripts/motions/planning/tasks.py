@@ -25,8 +25,11 @@ class ContactWay:
         self.up = lift / height if height > 0 else lift
         self.risen = float(self.up @ (end[1] - start[1]))  # of the end above the start, along the lift
         self.top = max(0.0, self.risen) + height
+        self.rests = start is end and height == 0
 
     def at(self, share):
+        if self.rests:
+            return self.start
         along = smooth(share, LEAVES, ARRIVES) if self.top > 0 else smooth(share, 0, 1)
         raised = self.top * smooth(share, 0, RISEN) - (self.top - self.risen) * smooth(share, SINKS, 1)
         beside = self.end[1] - self.start[1] - self.risen * self.up

@@ -96,7 +96,7 @@ class Field:
         return self.value
 
     def choice(self, known):
-        if self.value not in known:
+        if isinstance(self.value, (list, dict)) or self.value not in known:
             self.refuse("unknown value %s; %s" % (self.shown(), nearest(self.value, known)))
         return self.value
 
