@@ -74,6 +74,27 @@ TEST(Wheels, ACartRollsDownASlopeAsItsInertiaLetsIt) {
   }
 }
 
+/** At steps of 5 ms the wheels turn by 2 rad in one. */
+TEST(Wheels, WheelsThatSpinPushAsFrictionLetsThem) {
+  for (const double time_step : {1e-3, 5e-3})
+    for (const EnvironmentConfig& ground : {plane(), tiles()}) {
+      SimulationConfig config;
+      config.time_step = time_step;
+      config.contact.surface.friction = 0.8;
+      config.environments = {ground};
+      config.robots = {cart()};
+      config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
+      config.robots[0].gains["default"] = {0, 0, 2};
+      Simulator simulator(config, model::UriResolver());
+      simulator.commandJoints(0, {simulator.robots()[0].joint_names, {}, {400, 400, 400, 400}, {}});
+      const long steps = std::lround(0.5 / time_step);
+      for (long i = 0; i < steps; ++i) simulator.step();
+      const dynamics::BodyState after = bodyOf(simulator, "cart");
+      EXPECT_NEAR(after.v_WCom.x(), 0.8 * G * 0.5, 1e-5) << time_step << " " << ground.name;
+      EXPECT_NEAR(after.X_WB.translation().z(), WHEEL + LAYER_OF_WHEEL, 1e-6) << time_step << " " << ground.name;
+    }
+}
+
 /** A coin of 1 kg that leans by 0.3 rad to the left and rolls on a circle about the origin. */
 struct RollingCoin {
   static constexpr double RADIUS = 0.05, LENGTH = 0.002, LAYER = 0.0005, LEAN = 0.3, CIRCLE = 0.3;               // [m], [rad]

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "blem_sim/contact/contact_order.h"
 #include "evaluation/world_contact.h"
@@ -11,8 +12,8 @@
 namespace blem_sim::contact {
 namespace {
 
-// Sines of the lean from which on a rim has a lowest point, and beyond which it rolls on it and its other vertices fade.
-constexpr double LEANS = 1e-3, ROLLS = 0.05;
+// Sines of the lean from which on a rim has a lowest point; beyond which it rolls on it, and its other vertices fade; and are gone.
+constexpr double LEANS = 1e-3, ROLLS = 0.05, ROLLS_ALONE = 0.1;
 constexpr double ON_MESH = 1e-7;  // [m] from the mesh; points farther away are those of contacts that fade
 
 /** A cylinder in the world, and the surface that it meets. */
@@ -85,7 +86,7 @@ void RoundSide::overPlane(int vertex, Contact* contact) const {
     contact->point += X_WK_.linear() * (way - 0.5 * lower * towards);
     contact->depth += lower;
   } else {
-    contact->depth -= cylinder_.radius * std::max(0.0, lean - ROLLS);
+    contact->depth -= lean < ROLLS_ALONE ? cylinder_.radius * std::max(0.0, lean - ROLLS) : std::numeric_limits<double>::infinity();
   }
   if (lean < ROLLS) return;
   rename(from_lowest == 0 ? rim(vertex % 2 == 1) : Feature{FeatureKind::VERTEX, 2 * from_lowest + vertex % 2}, contact);

@@ -5,6 +5,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/simulator_input.h"
 #include "sim/clouds/live_mesh_scene.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim::sim {
 namespace {

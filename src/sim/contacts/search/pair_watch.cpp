@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "contacts/motion/body_twist.h"
 #include "contacts/motion/meeting_speed.h"
 
 namespace blem_sim::sim {
@@ -30,6 +31,15 @@ double armOf(const contact::Collider& collider, const Vector3& com) {
   for (int corner = 0; corner < 8; ++corner)
     arm = std::max(arm, (collider.X_BC * box.corner(static_cast<Box::CornerType>(corner)) - com).norm());
   return arm;
+}
+
+/** [m/s] Speed of a collider's surface, at most: spin of a cylinder about its axis leaves it where it is. @param arm of the collider [m] */
+double surfaceSpeed(const contact::Collider& collider, const Pose& X_WC, const BodyTwist& twist, double arm) {
+  const double speed = twist.v.norm() + twist.w.norm() * arm;
+  if (!collider.geometry || !collider.geometry->cylinder()) return speed;
+  const Pose X_WK = X_WC * collider.geometry->cylinder()->X_GK;
+  const BodyTwist seen = withoutSpin(twist, X_WK.translation(), X_WK.linear().col(2));
+  return std::min(speed, seen.v.norm() + seen.w.norm() * 0.5 * collider.geometry->bounds().diagonal().norm());
 }
 
 /** Length [m] of the longest edge of a collider's box, layers included. */
@@ -89,8 +99,8 @@ void PairWatch::measureArms(const SimulatedWorld& world) {
 void PairWatch::moveColliders(const StateAhead& ahead, std::vector<contact::ColliderMotion>* motion) {
   const std::vector<contact::Collider>& colliders = ahead.world.colliders;
   const double fall = 0.5 * ahead.world.world.gravity().norm() * ahead.dt * ahead.dt;
-  const auto speed_of = [this](const dynamics::BodyState& state, std::size_t collider) {
-    return state.v_WCom.norm() + state.w_WB.norm() * arms_[collider];
+  const auto speed_of = [&](const std::vector<dynamics::BodyState>& bodies, std::size_t i) {
+    return surfaceSpeed(colliders[i], (*motion)[i].X_WC, twistOf(ahead.world, bodies, colliders[i].body), arms_[i]);
   };
   motion->resize(colliders.size());
   for (std::size_t i = 0; i < colliders.size(); ++i) {
@@ -99,9 +109,10 @@ void PairWatch::moveColliders(const StateAhead& ahead, std::vector<contact::Coll
       (*motion)[i] = {colliders[i].X_BC, 0};
       continue;
     }
-    double speed = speed_of(ahead.bodies[body], i);
-    if (ahead.faster) speed = std::max(speed, speed_of((*ahead.faster)[body], i));
-    (*motion)[i] = {ahead.bodies[body].X_WB * colliders[i].X_BC, REACH_FACTOR * speed * ahead.dt + fall};
+    (*motion)[i].X_WC = ahead.bodies[body].X_WB * colliders[i].X_BC;
+    double speed = speed_of(ahead.bodies, i);
+    if (ahead.faster) speed = std::max(speed, speed_of(*ahead.faster, i));
+    (*motion)[i].reach = REACH_FACTOR * speed * ahead.dt + fall;
   }
 }
 
