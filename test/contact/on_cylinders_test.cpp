@@ -148,5 +148,35 @@ TEST(OnCylinders, MantleAndRimsMeetAKerb) {
   }
 }
 
+/** Parallel wheels, one of them shifted along its axis, and crossed ones. */
+TEST(OnCylinders, CylindersMeetCylinders) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI);
+  Collider first = wheel(), second = wheel();
+  const auto turned = [&](const Vector3& p, const Matrix3& R) {
+    Pose X = Pose::Identity();
+    X.linear() = R * Eigen::AngleAxisd(angle(random), Vector3::UnitZ()).toRotationMatrix();
+    X.translation() = p;
+    return X;
+  };
+  for (int i = 0; i < 300; ++i) {
+    first.body = i < 100 ? -1 : 0;
+    second.body = i < 200 ? 1 : -1;
+    const double around = angle(random), distance = 2 * WHEEL + 1.5 * WHEEL_LAYER;
+    const Vector3 beside(distance * std::cos(around), distance * std::sin(around), 0.6 * HALF_WIDTH);
+    const Matrix3 R = Eigen::Quaterniond(0.5, 0.1 * i, 0.3, -0.2).normalized().toRotationMatrix();
+    const ContactManifold parallel = contactsOf(first, turned(Vector3::Zero(), R), second, turned(R * beside, R));
+    ASSERT_EQ(parallel.contacts.size(), 2u) << i;
+    for (const Contact& contact : parallel.contacts) {
+      EXPECT_NEAR(contact.depth, 0.5 * WHEEL_LAYER, 1e-12);
+      EXPECT_NEAR((R.transpose() * contact.normal_BA).dot(Vector3(std::cos(around), std::sin(around), 0)), -1, 1e-12);
+    }
+    const Matrix3 crossed = R * Eigen::AngleAxisd(0.9, Vector3::UnitX()).toRotationMatrix();
+    const ContactManifold cross = contactsOf(first, turned(Vector3::Zero(), R), second, turned(R * Vector3(distance, 0, 0), crossed));
+    ASSERT_EQ(cross.contacts.size(), 1u) << i;
+    EXPECT_NEAR(cross.contacts[0].depth, 0.5 * WHEEL_LAYER, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::contact

@@ -95,6 +95,36 @@ TEST(Wheels, WheelsThatSpinPushAsFrictionLetsThem) {
     }
 }
 
+TEST(Wheels, ALogThatLiesOnTwoRollersTurnsAgainstThem) {
+  constexpr double LOG = 0.04, APART = 0.06, SPEED = 5;
+  std::string urdf = "<robot name=\"rollers\"><link name=\"frame\"/>";
+  for (const double x : {-APART, APART})
+    urdf += fmt::format(R"(<link name="roller{0}">{1}{2}</link><joint name="of_roller{0}" type="continuous"><parent link="frame"/>
+        <child link="roller{0}"/><origin xyz="{0} 0 0" rpy="-1.5707963267948966 0 0"/><axis xyz="0 0 1"/></joint>)",
+                        x, inertial(1, Vector3::Constant(0.001)), cylinder(WHEEL, 0.3));
+  SimulationConfig config;
+  config.robots = {robot("rollers", urdf + "</robot>", true)};
+  config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
+  config.robots[0].gains["default"] = {0, 0, 10};
+  const double reach = WHEEL + LOG + 2 * LAYER_OF_WHEEL, height = std::sqrt(reach * reach - APART * APART);
+  ObjectConfig log;
+  log.name = "log";
+  log.urdf_xml = "<robot name='log'><link name='log'>" + inertial(1, {0.004, 0.004, 0.0008}) + cylinder(LOG, 0.2) + "</link></robot>";
+  log.X_WO = makePose({0, 0.02, height}, {-M_PI / 2, 0, 0});
+  config.objects = {log};
+  Simulator simulator(config, model::UriResolver());
+  simulator.commandJoints(0, {simulator.robots()[0].joint_names, {}, {SPEED, SPEED}, {}});
+  for (int i = 0; i < 1000; ++i) simulator.step();
+  double off = 0;
+  for (int i = 0; i < 1000; ++i) {
+    simulator.step();
+    off = std::max(off, (bodyOf(simulator, "log").X_WB.translation() - Vector3(0, 0.02, height)).norm());
+  }
+  EXPECT_LT(off, 1e-6);
+  const Vector3 spin = bodyOf(simulator, "log").w_WB;
+  EXPECT_NEAR((spin + SPEED * (WHEEL + LAYER_OF_WHEEL) / (LOG + LAYER_OF_WHEEL) * Vector3::UnitY()).norm(), 0, 1e-6);
+}
+
 /** A coin of 1 kg that leans by 0.3 rad to the left and rolls on a circle about the origin. */
 struct RollingCoin {
   static constexpr double RADIUS = 0.05, LENGTH = 0.002, LAYER = 0.0005, LEAN = 0.3, CIRCLE = 0.3;               // [m], [rad]

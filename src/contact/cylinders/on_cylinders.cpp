@@ -41,8 +41,9 @@ class RoundSide {
   Vector3 towardsOther(const Contact& contact) const { return X_WK_.linear().transpose() * (is_a_ ? -1 : 1) * contact.normal_BA; }
   void overPlane(int vertex, Contact* contact) const;
   void atPoint(Contact* contact) const;
+  void atCylinder(int own_rim, Contact* contact) const;
+  void place(const Vector3& x, const Vector3& q, Contact* contact) const;
   bool isOnMesh(const Vector3& p) const;
-  bool project(const Vector3& q, Vector3* x) const;
   bool nearestPair(const Feature& other, Vector3* x, Vector3* q) const;
 
   const PlacedCollider &own_, &other_;
@@ -55,6 +56,25 @@ bool isRim(const geometry::Cylinder& cylinder, const Feature& feature) {
   return feature.kind == FeatureKind::VERTEX && feature.index < 2 * cylinder.sides;
 }
 
+/** Whether a feature of a cylinder's mesh, which contacts have, belongs to mantle or rim: two of the four triangles of a side do. */
+bool isRound(const Feature& feature) { return feature.kind != FeatureKind::FACE || feature.index % 4 < 2; }
+
+/** Rim on which a feature of a cylinder's mesh lies: 0 the lower one, 1 the upper one, -1 none. */
+int rimOf(const CollisionGeometry& geometry, const Feature& feature) {
+  if (feature.kind == FeatureKind::VERTEX) return feature.index % 2;
+  if (feature.kind != FeatureKind::EDGE) return -1;
+  const auto ends = geometry.topology().ends(geometry.mesh(), feature.index);
+  return ends[0] % 2 == ends[1] % 2 ? ends[0] % 2 : -1;
+}
+
+/** Nearest point of mantle or rim to q, in the cylinder's frame. @return false if it is on a flat end, or q is inside */
+bool project(const geometry::Cylinder& cylinder, const Vector3& q, Vector3* x) {
+  const double from_axis = std::hypot(q.x(), q.y()), z = std::clamp(q.z(), -cylinder.half_length, cylinder.half_length);
+  if (from_axis <= cylinder.radius) return false;
+  *x = {cylinder.radius / from_axis * q.x(), cylinder.radius / from_axis * q.y(), z};
+  return true;
+}
+
 void RoundSide::rename(const Feature& own, Contact* contact) const {
   if (!is_named_by_place_) return;
   const Feature other = otherFeature(*contact);
@@ -64,7 +84,11 @@ void RoundSide::rename(const Feature& own, Contact* contact) const {
 void RoundSide::move(Contact* contact) const {
   const Feature own = ownFeature(*contact), other = otherFeature(*contact);
   if (contact->pierced) return;
-  if (other.kind == FeatureKind::FACE || other.kind == FeatureKind::HALF_SPACE) {
+  if (other_.collider.geometry->cylinder() && isRound(own) && isRound(other)) {
+    const int own_rim = rimOf(*own_.collider.geometry, own), other_rim = rimOf(*other_.collider.geometry, other);
+    if (other_rim < 0 ? own_rim >= 0 || is_a_ : own_rim >= 0 && is_a_) atCylinder(own_rim, contact);
+    rename(own_rim < 0 ? Feature{FeatureKind::FACE, 0} : rim(own_rim == 1), contact);
+  } else if (other.kind == FeatureKind::FACE || other.kind == FeatureKind::HALF_SPACE) {
     if (isRim(cylinder_, own)) overPlane(own.index, contact);
   } else {
     atPoint(contact);
@@ -99,17 +123,9 @@ bool RoundSide::isOnMesh(const Vector3& p) const {
   return std::abs(p.z()) <= cylinder_.half_length + ON_MESH && std::abs(std::hypot(p.x(), p.y()) - mantle) <= ON_MESH;
 }
 
-/** Nearest point of mantle or rim. @return false if it is on a flat end, or q is inside */
-bool RoundSide::project(const Vector3& q, Vector3* x) const {
-  const double from_axis = std::hypot(q.x(), q.y()), z = std::clamp(q.z(), -cylinder_.half_length, cylinder_.half_length);
-  if (from_axis <= cylinder_.radius) return false;
-  *x = {cylinder_.radius / from_axis * q.x(), cylinder_.radius / from_axis * q.y(), z};
-  return true;
-}
-
 /** Nearest points of the cylinder and of the other's vertex or edge, from near ones on. @return false if none is on mantle or rim */
 bool RoundSide::nearestPair(const Feature& other, Vector3* x, Vector3* q) const {
-  if (other.kind == FeatureKind::VERTEX) return project(*q, x);
+  if (other.kind == FeatureKind::VERTEX) return project(cylinder_, *q, x);
   const CollisionGeometry& geometry = *other_.collider.geometry;
   const auto ends = geometry.topology().ends(geometry.mesh(), other.index);
   const Vector3 start = X_KO_ * geometry.mesh().vertices[ends[0]], along = X_KO_ * geometry.mesh().vertices[ends[1]] - start;
@@ -119,25 +135,56 @@ bool RoundSide::nearestPair(const Feature& other, Vector3* x, Vector3* q) const 
     const Vector3 beside_axis = pointAt(-start.head<2>().dot(along.head<2>()) / across2);
     if (std::abs(beside_axis.z()) <= cylinder_.half_length) {
       *q = beside_axis;
-      return project(*q, x);
+      return project(cylinder_, *q, x);
     }
   }
   constexpr int TIMES = 4;
   for (int i = 0; i < TIMES; ++i) {
-    if (!project(*q, x)) return false;
+    if (!project(cylinder_, *q, x)) return false;
     *q = pointAt((*x - start).dot(along) / length2);
   }
-  return project(*q, x);
+  return project(cylinder_, *q, x);
 }
 
 void RoundSide::atPoint(Contact* contact) const {
-  const double own_radius = own_.collider.radius, layer = own_radius + other_.collider.radius, gap_of_mesh = layer - contact->depth;
   const Pose X_KW = X_WK_.inverse();
-  if (!isOnMesh(X_KW * witnessOf(*contact, own_radius, is_a_))) return;
+  if (!isOnMesh(X_KW * witnessOf(*contact, own_.collider.radius, is_a_))) return;
   Vector3 x, q = X_KW * witnessOf(*contact, other_.collider.radius, !is_a_);
-  if (!nearestPair(otherFeature(*contact), &x, &q)) return;
-  const double gap = (x - q).norm();
-  if (gap <= TOUCH || gap > gap_of_mesh + ON_MESH) return;
+  if (nearestPair(otherFeature(*contact), &x, &q)) place(x, q, contact);
+}
+
+/**
+ * Where mantle or rim meet the mantle or the rim of another cylinder: of two mantles the nearest points of the axes tell.
+ * @param own_rim as rimOf() tells
+ */
+void RoundSide::atCylinder(int own_rim, Contact* contact) const {
+  const geometry::Cylinder& other = *other_.collider.geometry->cylinder();
+  const Pose X_KL = X_KO_ * other.X_GK;
+  const Vector3 middle = X_KL.translation(), axis = X_KL.linear().col(2);
+  const double across2 = axis.head<2>().squaredNorm();
+  if (own_rim < 0 && across2 < MIN_EDGE_SINE * MIN_EDGE_SINE) return;
+  const auto onOther = [&](double t) -> Vector3 { return middle + std::clamp(t, -other.half_length, other.half_length) * axis; };
+  const auto towards = [&](const Vector3& p, double z) -> Vector3 {
+    return cylinder_.radius / p.head<2>().norm() * Vector3(p.x(), p.y(), 0) + Vector3(0, 0, z);
+  };
+  Vector3 x;
+  if (own_rim >= 0) {
+    const double z = own_rim == 0 ? -cylinder_.half_length : cylinder_.half_length;
+    x = Vector3(0, 0, z);
+    constexpr int TIMES = 8;
+    for (int i = 0; i < TIMES; ++i) x = towards(onOther(axis.dot(x - middle)), z);
+  } else {
+    const Vector3 near = onOther(-middle.head<2>().dot(axis.head<2>()) / across2);
+    x = towards(near, std::clamp(near.z(), -cylinder_.half_length, cylinder_.half_length));
+  }
+  Vector3 q;
+  if (x.allFinite() && project(other, X_KL.inverse() * x, &q)) place(x, X_KL * q, contact);
+}
+
+/** Sets the contact to that of two points, in the cylinder's frame, unless they are farther apart than those of the mesh. */
+void RoundSide::place(const Vector3& x, const Vector3& q, Contact* contact) const {
+  const double own_radius = own_.collider.radius, layer = own_radius + other_.collider.radius, gap = (x - q).norm();
+  if (gap <= TOUCH || gap > layer - contact->depth + ON_MESH) return;
   const Vector3 normal = (x - q) / gap;  // from the other to the cylinder
   contact->normal_BA = X_WK_.linear() * (is_a_ ? normal : Vector3(-normal));
   contact->depth = layer - gap;
@@ -155,6 +202,19 @@ void dropRepeated(std::vector<Contact>* contacts) {
                   contacts->end());
 }
 
+/** Of contacts at one place the first stays: sides of a static cylinder keep their names. */
+void dropAtOnePlace(std::vector<Contact>* contacts) {
+  constexpr double SAME = 1e-9;  // [m], and of normals
+  std::size_t kept = 0;
+  for (const Contact& contact : *contacts) {
+    const auto isSame = [&](const Contact& c) {
+      return (c.point - contact.point).squaredNorm() < SAME * SAME && (c.normal_BA - contact.normal_BA).squaredNorm() < SAME * SAME;
+    };
+    if (std::none_of(contacts->begin(), contacts->begin() + static_cast<std::ptrdiff_t>(kept), isSame)) (*contacts)[kept++] = contact;
+  }
+  contacts->resize(kept);
+}
+
 }  // namespace
 
 void moveOntoCylinders(const PlacedCollider& a, const PlacedCollider& b, double range, ContactManifold* manifold) {
@@ -170,6 +230,8 @@ void moveOntoCylinders(const PlacedCollider& a, const PlacedCollider& b, double 
       std::remove_if(contacts.begin(), contacts.end(), [&](const Contact& contact) { return manifold->layer - contact.depth > range; }),
       contacts.end());
   dropRepeated(&contacts);
+  const bool one_is_static = a.collider.body < 0 || b.collider.body < 0;
+  if (one_is_static && a.collider.geometry->cylinder() && b.collider.geometry->cylinder()) dropAtOnePlace(&contacts);
 }
 
 }  // namespace blem_sim::contact
