@@ -42,7 +42,7 @@ class RoundSide {
   void overPlane(int vertex, Contact* contact) const;
   void atPoint(Contact* contact) const;
   void atCylinder(int own_rim, Contact* contact) const;
-  void place(const Vector3& x, const Vector3& q, Contact* contact) const;
+  void set(const Vector3& x, const Vector3& q, Contact* contact) const;
   bool isOnMesh(const Vector3& p) const;
   bool nearestPair(const Feature& other, Vector3* x, Vector3* q) const;
 
@@ -150,7 +150,7 @@ void RoundSide::atPoint(Contact* contact) const {
   const Pose X_KW = X_WK_.inverse();
   if (!isOnMesh(X_KW * witnessOf(*contact, own_.collider.radius, is_a_))) return;
   Vector3 x, q = X_KW * witnessOf(*contact, other_.collider.radius, !is_a_);
-  if (nearestPair(otherFeature(*contact), &x, &q)) place(x, q, contact);
+  if (nearestPair(otherFeature(*contact), &x, &q)) set(x, q, contact);
 }
 
 /**
@@ -178,11 +178,11 @@ void RoundSide::atCylinder(int own_rim, Contact* contact) const {
     x = towards(near, std::clamp(near.z(), -cylinder_.half_length, cylinder_.half_length));
   }
   Vector3 q;
-  if (x.allFinite() && project(other, X_KL.inverse() * x, &q)) place(x, X_KL * q, contact);
+  if (x.allFinite() && project(other, X_KL.inverse() * x, &q)) set(x, X_KL * q, contact);
 }
 
 /** Sets the contact to that of two points, in the cylinder's frame, unless they are farther apart than those of the mesh. */
-void RoundSide::place(const Vector3& x, const Vector3& q, Contact* contact) const {
+void RoundSide::set(const Vector3& x, const Vector3& q, Contact* contact) const {
   const double own_radius = own_.collider.radius, layer = own_radius + other_.collider.radius, gap = (x - q).norm();
   if (gap <= TOUCH || gap > layer - contact->depth + ON_MESH) return;
   const Vector3 normal = (x - q) / gap;  // from the other to the cylinder
@@ -202,7 +202,7 @@ void dropRepeated(std::vector<Contact>* contacts) {
                   contacts->end());
 }
 
-/** Of contacts at one place the first stays: sides of a static cylinder keep their names. */
+/** The first contact at a place stays: sides of a static cylinder keep their names. */
 void dropAtOnePlace(std::vector<Contact>* contacts) {
   constexpr double SAME = 1e-9;  // [m], and of normals
   std::size_t kept = 0;
