@@ -95,6 +95,51 @@ TEST(Wheels, WheelsThatSpinPushAsFrictionLetsThem) {
     }
 }
 
+/** A log of 1 kg that lies on the plane, along y. */
+ObjectConfig lyingLog(double length) {
+  ObjectConfig log;
+  log.name = "log";
+  const double along = 0.5 * WHEEL * WHEEL, across = (3 * WHEEL * WHEEL + length * length) / 12;
+  log.urdf_xml = "<robot name='log'><link name='log'>" + inertial(1, {across, across, along}) + cylinder(WHEEL, length) + "</link></robot>";
+  log.X_WO = makePose({0, 0, WHEEL + LAYER_OF_WHEEL}, {-M_PI / 2, 0, 0});
+  return log;
+}
+
+TEST(Wheels, ALogThatSlidesEndsUpRolling) {
+  for (const double time_step : {1e-3, 5e-3}) {
+    SimulationConfig config;
+    config.time_step = time_step;
+    config.contact.surface.friction = 0.4;
+    config.environments = {plane()};
+    config.objects = {lyingLog(0.1)};
+    config.objects[0].linear_velocity = {2, 0, 0};
+    Simulator simulator(config, model::UriResolver());
+    for (int i = 0; i < std::lround(1 / time_step); ++i) simulator.step();
+    const double radius = WHEEL + LAYER_OF_WHEEL, inertia = 0.5 * WHEEL * WHEEL / (radius * radius);
+    EXPECT_NEAR(bodyOf(simulator, "log").v_WCom.x(), 2 / (1 + inertia), 1e-6) << time_step;
+  }
+}
+
+TEST(Wheels, ALogThatSpinsBouncesAsItsRestitutionSays) {
+  constexpr double DROP = 0.25, RESTITUTION = 0.5;
+  SimulationConfig config;
+  config.contact.surface.restitution = RESTITUTION;
+  config.contact.surface.friction = 0;
+  config.environments = {plane()};
+  config.objects = {lyingLog(0.1)};
+  config.objects[0].X_WO.translation().z() += DROP;
+  config.objects[0].angular_velocity = {0, 40, 0};
+  Simulator simulator(config, model::UriResolver());
+  const int fall = static_cast<int>(std::sqrt(2 * DROP / G) / 1e-3);
+  double apex = 0;
+  for (int i = 0; i < 2 * fall; ++i) {
+    simulator.step();
+    if (i > fall + 5) apex = std::max(apex, bodyOf(simulator, "log").X_WB.translation().z() - WHEEL - LAYER_OF_WHEEL);
+  }
+  EXPECT_NEAR(apex / DROP, RESTITUTION * RESTITUTION, 1e-4);
+  EXPECT_NEAR((bodyOf(simulator, "log").w_WB - Vector3(0, 40, 0)).norm(), 0, 1e-6);
+}
+
 TEST(Wheels, ALogThatLiesOnTwoRollersTurnsAgainstThem) {
   constexpr double LOG = 0.04, APART = 0.06, SPEED = 5;
   std::string urdf = "<robot name=\"rollers\"><link name=\"frame\"/>";
