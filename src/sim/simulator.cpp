@@ -102,6 +102,10 @@ void Simulator::commandJoints(int robot, const JointCommandMessage& command) {
   impl_->commandJoints(robot, command);
   impl_->tell("commandJoints", robot, command);
 }
+void Simulator::driveJoints(int robot, const JointVelocityCommand& command) {
+  impl_->driveJoints(robot, command);
+  impl_->tell("driveJoints", robot, command);
+}
 void Simulator::checkJointCommand(int robot, const JointCommandMessage& command) const { impl_->checkJointCommand(robot, command); }
 JointSample Simulator::desiredState(int robot, int joint) const { return desiredState(robot, joint, time()); }
 JointSample Simulator::desiredState(int robot, int joint, double time) const {

@@ -87,6 +87,21 @@ void Simulator::Impl::commandJoints(int robot, const JointCommandMessage& comman
   }
 }
 
+void Simulator::Impl::driveJoints(int robot, const JointVelocityCommand& command) {
+  const RobotInfo& info = world_.robots.at(robot);
+  checkJointCommand(robot, {command.joints, {}, command.velocities, {}});
+  for (const double number : {command.acceleration, command.max_effort})
+    if (!(number >= 0) || !isCommand(number))
+      throw InputError(
+          fmt::format("robot '{}': velocity command: acceleration and effort must be from 0 to {:g}", info.name, LARGEST_COMMAND));
+  if (command.velocities.size() != command.joints.size())
+    throw InputError(fmt::format("robot '{}': velocity command: give each joint a velocity", info.name));
+  for (std::size_t i = 0; i < command.joints.size(); ++i) {
+    const int joint = info.joints[placeAmong(info.joint_names, command.joints[i])];
+    world_.motors[joint].driveVelocity({command.velocities[i], command.acceleration, command.max_effort}, time());
+  }
+}
+
 double Simulator::Impl::nearestTurn(int joint, double position) const {
   if (!world_.motors[joint].settings().continuous) return position;
   return position + turnsTo(world_.world.jointState(joint).position, position);

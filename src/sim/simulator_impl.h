@@ -105,6 +105,7 @@ struct Simulator::Impl {
   // simulator_commands.cpp
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
+  void driveJoints(int robot, const JointVelocityCommand& command);
   void checkJointCommand(int robot, const JointCommandMessage& command) const;
   JointSample desiredState(int world_joint, double time) const;
   /** A position as the joint takes it: a joint that turns without end takes the turn nearest to its present position. */

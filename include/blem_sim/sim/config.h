@@ -212,6 +212,7 @@ struct RobotConfig {
   std::map<std::string, double> armature;               ///< [kg m^2 or kg] rotor inertia seen at the joint; by joint, "default"
   std::vector<SensorConfig> sensors;
   std::optional<std::vector<ControllerConfig>> controllers;  ///< none given: one of all joints (node only)
+  std::vector<ControllerConfig> drives;                      ///< of the URDF's `<gazebo>` blocks; controllers of their names beat them
   std::optional<int> max_contacts;                           ///< k of this robot
   std::string tf_prefix;                                     ///< of its frames (node only)
   bool publish_tf = true;                                    ///< /tf has where its root link is, and children of floating and planar joints

@@ -1,6 +1,7 @@
-// Settings of a controller: the keys of ros_controllers' joint_trajectory_controller and gripper_action_controller.
+// Settings of a controller: the keys of ros_controllers' joint_trajectory_controller, gripper_action_controller and diff_drive_controller.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,12 +18,34 @@ struct JointConstraint {
   double goal = 0;        ///< at the end
 };
 
-enum class ControllerKind { TRAJECTORY, GRIPPER };
+enum class ControllerKind { TRAJECTORY, GRIPPER, DRIVE };
+
+/** Settings of a drive: a robot on wheels that turns by letting the left ones roll otherwise than the right ones. */
+struct DriveConfig {
+  enum class Odometry { ENCODER, WORLD };
+  std::vector<std::string> left, right;  ///< joints of the wheels
+  double wheel_separation = 0;           ///< [m] between the middles of left and right wheels
+  double wheel_radius = 0;               ///< [m] at which they roll
+  double wheel_acceleration = 0;         ///< [m/s^2] of each wheel's rim; 0: any
+  double wheel_torque = 0;               ///< [N m] of each wheel's motor at most, beside its own limit; 0: that alone
+  double cmd_vel_timeout = 0.5;          ///< [s] simulated after the last command, when the wheels stop; 0: never
+  std::string command_topic;             ///< in the robot's namespace; empty: cmd_vel below the controller's name
+  std::string odom_topic;                ///< the same; empty: odom below the controller's name
+  std::string odom_frame = "odom";
+  std::string base_frame = "base_link";  ///< link that odometry tells of; the root link if there is none of that name
+  double publish_rate = 50;              ///< [Hz] of the odometry; 0 = every step, RATE_OFF = never
+  bool enable_odom_tf = true;            ///< /tf has the base in the frame of its odometry, and not in the world
+  Odometry source = Odometry::ENCODER;
+  std::array<double, 6> pose_covariance = {1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3};   ///< diagonal [m^2, rad^2]
+  std::array<double, 6> twist_covariance = {1e-5, 1e-5, 1e12, 1e12, 1e12, 1e-3};  ///< [(m/s)^2, (rad/s)^2]
+};
 
 struct ControllerConfig {
   std::string name = "joint_trajectory_controller";
   ControllerKind kind = ControllerKind::TRAJECTORY;
-  std::vector<std::string> joints;  ///< of a trajectory controller, empty: all that have a motor; of a gripper the one that its motor moves
+  /** Of a trajectory controller, empty: all that have a motor; of a gripper the one that its motor moves; of a drive left and right wheels.
+   */
+  std::vector<std::string> joints;
   double action_monitor_rate = 20;  ///< [Hz] of the action's feedback; 0 = every step, RATE_OFF = never
   // Keys of trajectory controllers.
   double state_publish_rate = 50;            ///< [Hz]; 0 = every step, RATE_OFF = never
@@ -35,7 +58,12 @@ struct ControllerConfig {
   double goal_tolerance = 0.01;             ///< [m or rad]
   double stall_velocity_threshold = 0.001;  ///< [m/s or rad/s] up to which a gripper stands still
   double stall_timeout = 1;                 ///< [s] after which a gripper that stands still has stalled
+  DriveConfig drive;
 };
+
+/** Topics of a drive in its robot's namespace. */
+std::string commandTopic(const ControllerConfig& drive);
+std::string odometryTopic(const ControllerConfig& drive);
 
 /** Keys of a ControllerConfig of that kind; its name and kind apart. */
 const std::vector<std::string>& controllerKeys(ControllerKind kind);

@@ -55,6 +55,7 @@ class Simulator {
   /** @throws InputError: unknown joint, NaN, wrong sizes; nothing is changed then */
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
+  void driveJoints(int robot, const JointVelocityCommand& command);
   /** Changes nothing. @throws InputError as commandJoints would */
   void checkJointCommand(int robot, const JointCommandMessage& command) const;
   JointSample desiredState(int robot, int joint) const;  ///< command of the motor now; joint = index into joint_names

@@ -62,6 +62,8 @@ struct RobotInfo {
   std::string tf_prefix;         ///< of its frames, without slashes at its ends; no other robot has it that has links of the same name
   bool publish_tf = true;
   OdometryConfig odom;
+  std::vector<ControllerConfig> drives;  ///< of its URDF
+  bool odom_tf = false;                  ///< /tf has its root link in the frame of a drive's odometry, not in the world
 };
 
 struct SensorInfo {
@@ -77,6 +79,14 @@ struct SensorInfo {
 struct JointCommandMessage {
   std::vector<std::string> joints;
   std::vector<double> positions, velocities, efforts;
+};
+
+/** Velocities that motors keep as exactly as their efforts allow, whatever their gains are. */
+struct JointVelocityCommand {
+  std::vector<std::string> joints;
+  std::vector<double> velocities;  ///< [rad/s or m/s] one per joint
+  double acceleration = 0;         ///< [rad/s^2 or m/s^2] on the way, from the velocity commanded before; 0: at once
+  double max_effort = 0;           ///< [N m or N] beside the motors' limits; 0: these alone
 };
 
 /** A link, or what stands for one: an object's body, an environment as a whole. */

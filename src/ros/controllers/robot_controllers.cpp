@@ -8,6 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "controllers/controller_parameters.h"
+#include "controllers/drive_server.h"
 #include "controllers/gripper_server.h"
 #include "controllers/trajectory_server.h"
 #include "messages/ros_names.h"
@@ -30,6 +31,7 @@ const std::vector<TypeRow> TYPE_TABLE = {
     {"pos_vel_acc_controllers/JointTrajectoryController", "hardware_interface::PosVelAccJointInterface", sim::ControllerKind::TRAJECTORY},
     {"position_controllers/GripperActionController", "hardware_interface::PositionJointInterface", sim::ControllerKind::GRIPPER},
     {"effort_controllers/GripperActionController", "hardware_interface::EffortJointInterface", sim::ControllerKind::GRIPPER},
+    {"diff_drive_controller/DiffDriveController", "hardware_interface::VelocityJointInterface", sim::ControllerKind::DRIVE},
     {"joint_state_controller/JointStateController", "hardware_interface::JointStateInterface", {}},
 };
 
@@ -70,6 +72,18 @@ std::optional<std::vector<sim::ControllerConfig>> configuredOf(const sim::Simula
   return {};
 }
 
+/** The controller of all joints that no drive has; nothing if there is none left. */
+std::vector<sim::ControllerConfig> ofOtherJoints(const sim::RobotInfo& robot) {
+  sim::ControllerConfig config;
+  if (robot.drives.empty()) return {config};
+  const auto isDriven = [&](const std::string& joint) {
+    return std::any_of(robot.drives.begin(), robot.drives.end(), [&](const auto& drive) { return contains(drive.joints, joint); });
+  };
+  for (std::size_t joint = 0; joint < robot.joint_names.size(); ++joint)
+    if (robot.driven[joint] && !isDriven(robot.joint_names[joint])) config.joints.push_back(robot.joint_names[joint]);
+  return config.joints.empty() ? std::vector<sim::ControllerConfig>() : std::vector<sim::ControllerConfig>{config};
+}
+
 void checkName(const std::string& name) {
   if (!isRosName(name) || name.front() == '/')
     throw InputError("controllers: '" + name + "' is no name in a ROS namespace; use letters, digits, _ and /");
@@ -83,12 +97,18 @@ RobotControllers::RobotControllers(ros::NodeHandle node, SimulationLoop* loop, i
       simulator_(&loop->simulator()),
       robot_(simulator_->robots()[robot].name) {
   const auto configured = configuredOf(*simulator_, robot_);
-  for (const sim::ControllerConfig& config : configured.value_or(std::vector<sim::ControllerConfig>(1))) {
-    checkName(config.name);
-    add(withParameters(node_, config), typeOfController(controllerType(node_, config.name), config.kind));
+  const sim::RobotInfo& info = simulator_->robots()[robot];
+  for (const sim::ControllerConfig& config : configured.value_or(ofOtherJoints(info))) {
+    addConfigured(config);
     controllers_.back().gives_way = !configured;
   }
+  for (const sim::ControllerConfig& drive : info.drives) addConfigured(drive);
   startFirst();
+}
+
+void RobotControllers::addConfigured(const sim::ControllerConfig& config) {
+  checkName(config.name);
+  add(withParameters(node_, config), typeOfController(controllerType(node_, config.name), config.kind));
 }
 
 void RobotControllers::startFirst() {
@@ -139,12 +159,13 @@ void RobotControllers::add(const sim::ControllerConfig& config, const std::strin
   Controller controller;
   controller.name = config.name;
   controller.type = type;
+  const int robot = simulator_->robotIndex(robot_);
   if (config.kind == sim::ControllerKind::GRIPPER)
-    controller.server = std::make_unique<GripperServer>(node_, sim::GripperController(simulator_, simulator_->robotIndex(robot_), config),
-                                                        loop_->refusals());
+    controller.server = std::make_unique<GripperServer>(node_, sim::GripperController(simulator_, robot, config), loop_->refusals());
+  else if (config.kind == sim::ControllerKind::DRIVE)
+    controller.server = std::make_unique<DriveServer>(node_, sim::DriveController(simulator_, robot, config), loop_);
   else
-    controller.server =
-        std::make_unique<TrajectoryServer>(node_, sim::TrajectoryController(simulator_, simulator_->robotIndex(robot_), config), loop_);
+    controller.server = std::make_unique<TrajectoryServer>(node_, sim::TrajectoryController(simulator_, robot, config), loop_);
   controllers_.push_back(std::move(controller));
 }
 

@@ -53,6 +53,7 @@ class RobotControllers {
   };
 
   void add(const sim::ControllerConfig& config, const std::string& type);
+  void addConfigured(const sim::ControllerConfig& config);
   void startFirst();
   Controller* find(const std::string& name);
   std::vector<std::string> knownNames() const;

@@ -109,7 +109,7 @@ void TransformPublisher::addRobot(const sim::StepReport& report, const sim::Robo
   const auto poseOf = [&](int link) { return linkMotion(simulator_, report, robot, link).X_WL; };
   const auto frameOf = [&](int link) { return ownFrame(robot, robot.description->links[link].name); };
   const std::string root = ownFrame(robot, robot.root_link), odom = namedFrame(robot, robot.odom.frame);
-  if (root != WORLD_FRAME) add({WORLD_FRAME, root, poseOf(robot.description->root)}, report.time, message);
+  if (root != WORLD_FRAME && !robot.odom_tf) add({WORLD_FRAME, root, poseOf(robot.description->root)}, report.time, message);
   if (odom != WORLD_FRAME) add({WORLD_FRAME, odom, robot.odom.X_WF}, report.time, message);
   for (const model::JointModel& joint : robot.description->joints) {
     if (joint.type != model::JointType::FLOATING && joint.type != model::JointType::PLANAR) continue;

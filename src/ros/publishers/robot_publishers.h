@@ -58,9 +58,9 @@ class OdometryPublisher : public StepPublisher {
 };
 
 /**
- * /tf: world to each object, and of each robot with publish_tf: world to the root link, unless that is the frame world itself, and to
- * its odometry's frame, and what robot_state_publisher leaves out: children of floating and planar joints in their parents. Told late
- * subscribers during a pause, so that rviz sees where everything stands.
+ * /tf: world to each object, and of each robot with publish_tf: world to the root link, unless that is the frame world itself or in that of
+ * a drive's odometry, and to its odometry's frame, and what robot_state_publisher leaves out: children of floating and planar joints in
+ * their parents. Told late subscribers during a pause, so that rviz sees where everything stands.
  */
 class TransformPublisher : public StepPublisher {
  public:

@@ -11,9 +11,12 @@
 #include "build/frame_prefix.h"
 #include "build/robot_motors.h"
 #include "build/robot_names.h"
+#include "gazebo/gazebo_names.h"
 
 namespace blem_sim::sim {
 namespace {
+
+constexpr const char* TRUE_ODOMETRY = "ground_truth/odom";  // topic, where a drive has that of the configuration
 
 std::set<std::string> jointsWithSensor(const RobotConfig& config) {
   std::set<std::string> joints;
@@ -132,6 +135,22 @@ void RobotBuilder::nameFrames() {
   info_.odom = config_.odom;
   info_.tf_prefix = framePrefix(config_, *model_, world_->robots, &start_notes_);
   if (info_.root_link == WORLD_LINK) tellOfWorldLink();
+  yieldToDrives();
+}
+
+void RobotBuilder::yieldToDrives() {
+  info_.drives = config_.drives;
+  std::vector<ControllerConfig> drives = config_.drives;
+  for (const ControllerConfig& controller : config_.controllers.value_or(std::vector<ControllerConfig>()))
+    if (controller.kind == ControllerKind::DRIVE) drives.push_back(controller);
+  for (const ControllerConfig& controller : drives) {
+    if (controller.drive.publish_rate == RATE_OFF) continue;
+    info_.odom_tf = info_.odom_tf || controller.drive.enable_odom_tf;
+    const std::string topic = resolvedTopic(info_.name_space, odometryTopic(controller));
+    if (topic != resolvedTopic(info_.name_space, info_.odom.topic)) continue;
+    info_.odom.topic = TRUE_ODOMETRY;
+    start_notes_.push_back(fmt::format("{} has the odometry of '{}'; the truth is on {}", topic, controller.name, TRUE_ODOMETRY));
+  }
 }
 
 void RobotBuilder::tellOfWorldLink() {

@@ -62,10 +62,25 @@ void JointMotor::keepEffort(double effort, double now) {
   integral_ = 0;
 }
 
+void JointMotor::driveVelocity(const VelocityDrive& target, double now) {
+  const double present = mode_ == Mode::POSITION ? 0 : velocityTarget(now);
+  enter(Mode::DRIVE);
+  velocity_target_ = target.velocity;
+  ramp_ = target;
+  ramp_.velocity = present;
+  command_time_ = now;
+  integral_ = added_effort_ = 0;
+}
+
+double JointMotor::velocityTarget(double time) const {
+  if (mode_ != Mode::DRIVE || ramp_.acceleration == 0) return velocity_target_;
+  return ramp_.velocity + clamped(velocity_target_ - ramp_.velocity, ramp_.acceleration * std::max(time - command_time_, 0.0));
+}
+
 JointSample JointMotor::desired(double time) const {
   JointSample sample = spline_.sample(time);
   if (mode_ != Mode::POSITION) sample.velocity = sample.effort = 0;
-  sample.velocity += velocity_target_;
+  sample.velocity += velocityTarget(time);
   sample.effort += added_effort_;
   return sample;
 }
@@ -73,7 +88,7 @@ JointSample JointMotor::desired(double time) const {
 void JointMotor::sample(double time, double dt) {
   now_ = time;
   dt_ = dt;
-  sample_ = desired(settings_.law == MotorLaw::PID ? time : time + dt);
+  sample_ = desired(settings_.law == MotorLaw::PID && mode_ != Mode::DRIVE ? time : time + dt);
 }
 
 bool JointMotor::isOverdue() const {
@@ -104,6 +119,7 @@ dynamics::JointDrive JointMotor::drive(const dynamics::JointState& state) {
   drive.dry_friction = settings_.friction.dry;
   drive.viscous_friction = settings_.friction.viscous;
   capped_ = false;
+  error_ = 0;
   given_effort_.reset();
   if (!settings_.commanded) return drive;
   if (isOverdue()) {
@@ -111,6 +127,10 @@ dynamics::JointDrive JointMotor::drive(const dynamics::JointState& state) {
     sample(now_, dt_);
   }
   setVelocities(state.position, &drive);
+  if (mode_ == Mode::DRIVE) {
+    driveExactly(&drive);
+    return drive;
+  }
   const double stiffness = mode_ == Mode::POSITION ? settings_.gains.p : 0;
   error_ = mode_ == Mode::POSITION ? sample_.position - state.position : 0;
   const double feed_forward = integral_ + sample_.effort;
@@ -125,6 +145,12 @@ dynamics::JointDrive JointMotor::drive(const dynamics::JointState& state) {
   }
   giveEffort(stiffness * error_ + damping() * (sample_.velocity - state.velocity) + feed_forward, state.velocity, &drive);
   return drive;
+}
+
+void JointMotor::driveExactly(dynamics::JointDrive* drive) const {
+  drive->damping = RIGID * (settings_.inertia > 0 ? settings_.inertia : 1) / dt_;
+  drive->target_velocity = sample_.velocity;
+  drive->max_effort = ramp_.max_effort > 0 ? std::min(ramp_.max_effort, settings_.effort_limit) : settings_.effort_limit;
 }
 
 void JointMotor::giveEffort(double effort, double velocity, dynamics::JointDrive* drive) {
@@ -170,7 +196,13 @@ void JointMotor::integrate(double dt) {
 void JointMotor::save(geometry::StateWriter* writer) const {
   writer->numbers({static_cast<double>(mode_), velocity_target_, added_effort_, integral_});
   if (mode_ != Mode::POSITION) writer->number(command_time_);
+  if (mode_ == Mode::DRIVE) writer->numbers({ramp_.velocity, ramp_.acceleration, ramp_.max_effort});
   spline_.save(writer);
+}
+
+void JointMotor::restoreRamp(geometry::StateReader* reader) {
+  for (double* number : {&ramp_.velocity, &ramp_.acceleration, &ramp_.max_effort}) *number = reader->number();
+  if (ramp_.acceleration < 0 || ramp_.max_effort < 0) reader->refuseContent("a motor's acceleration or effort is below 0");
 }
 
 void JointMotor::restore(geometry::StateReader* reader) {
@@ -179,6 +211,8 @@ void JointMotor::restore(geometry::StateReader* reader) {
   added_effort_ = reader->number();
   integral_ = reader->number();
   command_time_ = mode_ == Mode::POSITION ? 0 : reader->number();
+  ramp_ = VelocityDrive();
+  if (mode_ == Mode::DRIVE) restoreRamp(reader);
   spline_.restore(reader);
 }
 

@@ -26,6 +26,13 @@ struct MotorSettings {
   bool commanded = false;      ///< false: no motor of its own (a fixed joint, a mimic joint); friction stays
 };
 
+/** A velocity [rad/s or m/s] that a motor is to come to. */
+struct VelocityDrive {
+  double velocity = 0;
+  double acceleration = 0;  ///< [rad/s^2 or m/s^2] on the way, from the velocity commanded before; 0: at once
+  double max_effort = 0;    ///< [N m or N] beside the motor's limit; 0: that alone
+};
+
 /** Follows a trajectory, holds a target, keeps a velocity (an effort adds to each), or gives an effort. State: all of these, integral term.
  */
 class JointMotor {
@@ -42,6 +49,8 @@ class JointMotor {
   void keepVelocity(double velocity, double now);
   /** Effort alone: no stiffness, no damping; integral and trajectory end. */
   void keepEffort(double effort, double now);
+  /** Velocity alone, kept as exactly as the effort allows whatever the gains are, with a ramp towards it. */
+  void driveVelocity(const VelocityDrive& target, double now);
   void addEffort(double effort) { added_effort_ = effort; }
 
   JointSample desired(double time) const;
@@ -68,23 +77,28 @@ class JointMotor {
   void restore(geometry::StateReader* reader);
 
  private:
-  enum class Mode { POSITION, VELOCITY, EFFORT, COUNT };
+  enum class Mode { POSITION, VELOCITY, EFFORT, DRIVE, COUNT };
 
   void enter(Mode mode);
   bool isOverdue() const;
   double damping() const;
+  /** That adds to the spline's. */
+  double velocityTarget(double time) const;
+  void driveExactly(dynamics::JointDrive* drive) const;
   /** Velocities between which the motor drives in the coming (sub)step. */
   void setVelocities(double position, dynamics::JointDrive* drive);
   /** An effort given in advance, ended by the step's solution where it could drive the joint beyond its velocities. */
   void giveEffort(double effort, double velocity, dynamics::JointDrive* drive);
   bool atVelocityLimit(double effort, double velocity) const;
   void integrate(double dt);
+  void restoreRamp(geometry::StateReader* reader);
 
   MotorSettings settings_;
   double initial_position_ = 0;
   JointSpline spline_;
   Mode mode_ = Mode::POSITION;
   double velocity_target_ = 0;  ///< adds to the spline's
+  VelocityDrive ramp_;          ///< of DRIVE; its velocity is the one at command_time_
   double added_effort_ = 0;
   double integral_ = 0;      ///< [N m or N] the integral term, k_I times the integral of the error
   double command_time_ = 0;  ///< [s] of a velocity or an effort

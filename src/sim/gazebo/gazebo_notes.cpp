@@ -27,6 +27,7 @@ std::string GazeboNotes::shortened(const std::string& words) {
 std::vector<std::string> GazeboNotes::lines() const {
   std::vector<std::string> lines;
   sensors_.tell("sensors of its <gazebo> blocks", "", &lines);
+  drives_.tell("drives of its <gazebo> blocks", "", &lines);
   unknown_.tell("<gazebo>: not read", "; docs/gazebo_urdf.md lists what is", &lines);
   without_effect_.tell("<gazebo>: without effect here", "; docs/gazebo_urdf.md says why", &lines);
   anisotropic_.tell("<mu2> other than <mu1>, which friction of all directions is taken from", "", &lines);

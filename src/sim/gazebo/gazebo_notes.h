@@ -25,6 +25,9 @@ class GazeboNotes {
   /** A sensor that was made. @param words its name and kind */
   void sensor(const std::string& words) { sensors_.add(words); }
 
+  /** A drive that was made. @param words its name and topic */
+  void drive(const std::string& words) { drives_.add(words); }
+
   std::vector<std::string> lines() const;
 
  private:
@@ -46,7 +49,7 @@ class GazeboNotes {
   };
 
   std::string source_;
-  List unknown_, without_effect_, anisotropic_, sensors_;
+  List unknown_, without_effect_, anisotropic_, sensors_, drives_;
   std::vector<std::string> faults_;
 };
 

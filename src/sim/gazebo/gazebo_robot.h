@@ -15,8 +15,9 @@ struct GazeboRobot {
 };
 
 /**
- * Adds surfaces, self collision and sensors. The configuration beats the URDF: a sensor whose name or topic it has, and the surfaces that
- * it sets, stay as they are. What is not understood or cannot be used is told in the notes; nothing throws.
+ * Adds surfaces, self collision, sensors and drives. The configuration beats the URDF: a sensor whose name or topic it has, a drive whose
+ * name a controller has, and the surfaces that it sets, stay as they are. What is not understood or cannot be used is told in the notes;
+ * nothing throws.
  */
 GazeboRobot withGazeboBlocks(const RobotConfig& config, const model::RobotModel& model);
 

@@ -3,43 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "blem_sim/sim/sensor_values.h"
 #include "config/range_sensor_check.h"
+#include "gazebo/gazebo_drives.h"
+#include "gazebo/gazebo_names.h"
 #include "gazebo/gazebo_sensor_types.h"
-#include "numbers/nearest_name.h"
 
 namespace blem_sim::sim {
 namespace {
 
-constexpr std::size_t MOST_SENSORS = 1000;   // of a robot
-constexpr std::size_t COMPARED_NAMES = 200;  // in the search for the nearest one
+constexpr std::size_t MOST_SENSORS = 1000;  // of a robot
 constexpr const char* WORLD = "world";
+constexpr const char* PREFIX = "sensor_";  // of names that begin with no letter
 // Topics of every robot, which no sensor may have.
 const char* const TAKEN_TOPICS[] = {"joint_states", "odom", "joint_command", "joint_trajectory"};
-
-bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
-/** A name that ROS takes in a topic. */
-std::string rosWord(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !isWord(c); }, '_');
-  const bool begins_well = !name.empty() && std::isalpha(static_cast<unsigned char>(name.front()));
-  return begins_well ? name : "sensor_" + name;
-}
-
-bool isTopic(const std::string& topic) {
-  const bool begins_well = std::isalpha(static_cast<unsigned char>(topic.front())) || topic.front() == '/';
-  return begins_well && std::all_of(topic.begin(), topic.end(), [](char c) { return isWord(c) || c == '/'; });
-}
-
-std::string withoutDoubleSlashes(std::string topic) {
-  const auto twice = [](char a, char b) { return a == '/' && b == '/'; };
-  topic.erase(std::unique(topic.begin(), topic.end(), twice), topic.end());
-  return topic;
-}
 
 const char* wordOf(SensorType type) {
   switch (type) {
@@ -58,14 +37,6 @@ const char* wordOf(SensorType type) {
     default:
       return "sensor";
   }
-}
-
-/** In words, a name that is not there, and the nearest among the first that are. */
-template <typename Named>
-std::string unknownName(const std::string& kind, const std::string& name, const std::vector<Named>& items) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < std::min(items.size(), COMPARED_NAMES); ++i) names.push_back(items[i].name);
-  return fmt::format("there is no {} '{}' (the nearest is '{}')", kind, name, nearestName(name, names));
 }
 
 }  // namespace
@@ -111,6 +82,7 @@ void GazeboSensors::readSensor(const model::GazeboBlock& block) {
 
 void GazeboSensors::readPlugin(const model::GazeboBlock& block) {
   const GazeboPluginType* type = gazeboPluginType(block.type);
+  if (!type && readGazeboDrive(block, model_, &notes_, &config_)) return;
   if (!type) return readOtherPlugin(block);
   GazeboReader reader(block, &notes_);
   if (type->inside)
@@ -148,10 +120,7 @@ const SensorConfig* GazeboSensors::sensorNamed(const std::string& name) const {
   return found == config_.sensors.end() ? nullptr : &*found;
 }
 
-std::string GazeboSensors::resolved(const std::string& topic) const {
-  const bool absolute = !topic.empty() && topic.front() == '/';
-  return withoutDoubleSlashes(absolute ? topic : "/" + config_.name_space + "/" + topic);
-}
+std::string GazeboSensors::resolved(const std::string& topic) const { return resolvedTopic(config_.name_space, topic); }
 
 void GazeboSensors::add(GazeboSensor sensor, const model::GazeboBlock& block) {
   const GazeboReader reader(block, &notes_);
@@ -159,10 +128,10 @@ void GazeboSensors::add(GazeboSensor sensor, const model::GazeboBlock& block) {
   if (config_.sensors.size() >= configured_ + MOST_SENSORS)
     return notes_.fault(reader.where(), fmt::format("is one of more than {} sensors; it is left out: give fewer", MOST_SENSORS));
   const std::string seat = config.type == SensorType::FORCE_TORQUE ? config.joint : config.link;
-  config.name = rosWord(config.name.empty() ? fmt::format("{}_{}", seat, wordOf(config.type)) : config.name);
+  config.name = rosWord(config.name.empty() ? fmt::format("{}_{}", seat, wordOf(config.type)) : config.name, PREFIX);
   const SensorConfig* same = sensorNamed(config.name);
   if (same && same < config_.sensors.data() + configured_) return;
-  if (same) config.name += "_" + rosWord(seat);
+  if (same) config.name += "_" + rosWord(seat, PREFIX);
   nameTopics(&sensor);
   nameFrame(reader, &config);
   if (!sitsSomewhere(config, reader) || !topicIsFree(reader, &config)) return;
@@ -178,10 +147,7 @@ void GazeboSensors::nameTopics(GazeboSensor* sensor) {
   if (config.topic.empty() && !sensor->name_space.empty()) config.topic = config.name;
   for (std::string* topic :
        {&config.topic, &config.camera_topics.image_raw, &config.camera_topics.camera_info, &config.camera_topics.points}) {
-    // A robot's own name space beats that of its URDF, so that two robots of one URDF have topics of their own.
-    if (!topic->empty() && topic->front() != '/' && config_.name_space.empty() && !sensor->name_space.empty())
-      *topic = "/" + sensor->name_space + "/" + *topic;
-    *topic = withoutDoubleSlashes(*topic);
+    *topic = topicInBlock(*topic, sensor->name_space, config_.name_space);
     if (topic->empty() || isTopic(*topic)) continue;
     notes_.fault(fmt::format("sensor '{}'", config.name),
                  fmt::format("'{}' is no ROS topic; it is left out: use letters, digits, _ and /", *topic));

@@ -26,6 +26,11 @@ const std::map<std::string, Call> CALLS = {
        const int robot = in.takeRobot();
        to.commandJoints(robot, in.take<JointCommandMessage>());
      }},
+    {"driveJoints",
+     [](InputReader& in, Simulator& to) {
+       const int robot = in.takeRobot();
+       to.driveJoints(robot, in.take<JointVelocityCommand>());
+     }},
     {"holdJoint",
      [](InputReader& in, Simulator& to) {
        const int robot = in.takeRobot(), joint = in.takeJointOf(robot);

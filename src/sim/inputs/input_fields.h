@@ -26,6 +26,11 @@ void visitFields(Visitor& visit, JointCommandMessage& command) {
 }
 
 template <typename Visitor>
+void visitFields(Visitor& visit, JointVelocityCommand& command) {
+  visit(command.joints, command.velocities, command.acceleration, command.max_effort);
+}
+
+template <typename Visitor>
 void visitFields(Visitor& visit, dynamics::BodyState& state) {
   visit(state.X_WB, state.v_WCom, state.w_WB);
 }

@@ -53,6 +53,49 @@ TEST(ConfigControllers, ReadsGrippers) {
   EXPECT_EQ(gripper.stall_timeout, 4);
 }
 
+TEST(ConfigControllers, ReadsDrives) {
+  const ControllerConfig config =
+      controllersOf(
+          ", controllers: [{name: d, type: diff_drive, left_wheel: [a, b], right_wheel: c, wheel_separation: 0.5, wheel_radius: 0.1, "
+          "wheel_acceleration: 2, wheel_torque: 3, cmd_vel_timeout: 0.7, cmd_vel_topic: go, odom_topic: way, odom_frame_id: o, "
+          "base_frame_id: base, publish_rate: off, enable_odom_tf: false, odometry_source: world, "
+          "pose_covariance_diagonal: [1, 2, 3, 4, 5, 6], twist_covariance_diagonal: [6, 5, 4, 3, 2, 1]}]")
+          ->front();
+  EXPECT_EQ(config.kind, ControllerKind::DRIVE);
+  EXPECT_EQ(config.joints, (std::vector<std::string>{"a", "b", "c"}));
+  EXPECT_EQ(config.drive.left, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(config.drive.right, std::vector<std::string>{"c"});
+  EXPECT_EQ(config.drive.wheel_separation, 0.5);
+  EXPECT_EQ(config.drive.wheel_radius, 0.1);
+  EXPECT_EQ(config.drive.wheel_acceleration, 2);
+  EXPECT_EQ(config.drive.wheel_torque, 3);
+  EXPECT_EQ(config.drive.cmd_vel_timeout, 0.7);
+  EXPECT_EQ(commandTopic(config), "go");
+  EXPECT_EQ(odometryTopic(config), "way");
+  EXPECT_EQ(config.drive.odom_frame, "o");
+  EXPECT_EQ(config.drive.base_frame, "base");
+  EXPECT_EQ(config.drive.publish_rate, RATE_OFF);
+  EXPECT_FALSE(config.drive.enable_odom_tf);
+  EXPECT_EQ(config.drive.source, DriveConfig::Odometry::WORLD);
+  EXPECT_EQ(config.drive.pose_covariance[1], 2);
+  EXPECT_EQ(config.drive.twist_covariance[1], 5);
+}
+
+TEST(ConfigControllers, RefusesFaultyDrives) {
+  const std::string wheels = "name: d, type: diff_drive, left_wheel: a, right_wheel: b";
+  const auto told = [](const std::string& drive) { return refusalOfList("{" + drive + "}"); };
+  EXPECT_TRUE(isOneLineWith(told("name: d, type: diff_drive, right_wheel: b"), {"left_wheel", "missing"}));
+  EXPECT_TRUE(isOneLineWith(told("name: d, type: diff_drive, left_wheel: []"), {"left_wheel", "list"}));
+  EXPECT_TRUE(isOneLineWith(told(wheels + ", wheel_radius: 0.1"), {"wheel_separation", "missing"}));
+  EXPECT_TRUE(isOneLineWith(told(wheels + ", wheel_separation: 0.4"), {"wheel_radius", "missing"}));
+  EXPECT_TRUE(isOneLineWith(told(wheels + ", wheel_separation: 0, wheel_radius: 0.1"), {"wheel_separation", "above 0"}));
+  const std::string whole = wheels + ", wheel_separation: 0.4, wheel_radius: 0.1";
+  EXPECT_TRUE(isOneLineWith(told(whole + ", odometry_source: stars"), {"odometry_source", "encoder"}));
+  EXPECT_TRUE(isOneLineWith(told(whole + ", pose_covariance_diagonal: [1, 2, 3, 4, 5, -6]"), {"pose_covariance_diagonal", "below 0"}));
+  EXPECT_TRUE(isOneLineWith(told(whole + ", wheel_diameter: 0.2"), {"wheel_diameter", "wheel_radius"}));
+  EXPECT_EQ(told(whole), "");
+}
+
 TEST(ConfigControllers, KeysOfTheParameterServerGoOverThoseGiven) {
   ControllerConfig given;
   given.goal_time = 3;

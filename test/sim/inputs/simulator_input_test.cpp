@@ -11,36 +11,10 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/named_parts.h"
 #include "sim/state/saved_scene.h"
+#include "support/input_notes.h"
 
 namespace blem_sim::sim {
 namespace {
-
-/** Inputs with the steps made before them, and the hash after every step. */
-class InputNotes : public SimulatorWatcher {
- public:
-  explicit InputNotes(Simulator* simulator) : simulator_(simulator) { simulator->watch(this); }
-  ~InputNotes() override { simulator_->watch(nullptr); }
-  void told(const SimulatorInput& input) override { inputs.emplace_back(hashes.size(), input); }
-  void stepped() override { hashes.push_back(simulator_->stateHash()); }
-
-  std::vector<std::pair<std::size_t, SimulatorInput>> inputs;
-  std::vector<std::uint64_t> hashes;
-
- private:
-  Simulator* simulator_;
-};
-
-/** Step of the first hash that is another, counted from 1; 0 if there is none. */
-std::size_t firstDifference(const SimulationConfig& config, const InputNotes& notes) {
-  Simulator simulator(config, model::UriResolver());
-  std::size_t next = 0;
-  for (std::size_t step = 0; step < notes.hashes.size(); ++step) {
-    for (; next < notes.inputs.size() && notes.inputs[next].first == step; ++next) applyInput(notes.inputs[next].second, &simulator);
-    simulator.step();
-    if (simulator.stateHash() != notes.hashes[step]) return step + 1;
-  }
-  return 0;
-}
 
 SimulationConfig sceneWithCloud() {
   SimulationConfig config = sceneOfAllKinds();
@@ -90,6 +64,9 @@ std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& ear
       [](Simulator& s) { setOut(&s); },
       [](Simulator& s) {
         s.commandJoints(0, {{"hinge"}, {0.2}, {0.1}, {1}});
+      },
+      [](Simulator& s) {
+        s.driveJoints(0, {{"hinge"}, {0.3}, 1.7, 0.4});
       },
       [cloud](Simulator& s) mutable { s.updateCloud("live", &cloud); },
       [](Simulator& s) { s.spawn(spawned()); },

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Robots on wheels: cmd_vel in, odometry and /tf out, from a URDF's diff_drive plugin and from the configuration."""
+import math
+import os
+import sys
+import unittest
+
+import rospy
+import rostest
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
+from tf2_msgs.msg import TFMessage
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import sim_client
+from blem_sim.srv import ListControllers
+from sim_client import PATIENCE, Recorder, wait_until
+
+NAME = "differential_drive_controller"
+SPEED, TURN = 0.5, 0.5  # [m/s], [rad/s]
+
+
+def heading(pose):
+    return 2 * math.atan2(pose.orientation.z, pose.orientation.w)
+
+
+def listed(name_space=""):
+    service = name_space + "/controller_manager/list_controllers"
+    rospy.wait_for_service(service, PATIENCE)
+    return {c.name: c for c in rospy.ServiceProxy(service, ListControllers)().controller}
+
+
+def after_arc(pose, seconds):
+    """x, y and heading of a pose after an arc."""
+    start, radius = heading(pose), SPEED / TURN
+    end = start + TURN * seconds
+    return (pose.position.x + radius * (math.sin(end) - math.sin(start)), pose.position.y - radius * (math.cos(end) - math.cos(start)), end)
+
+
+class DriveTest(unittest.TestCase):
+    def setUp(self):
+        sim_client.reset_world()
+        sim_client.step(1)
+        self.log = self.listen("/rosout", Log)
+
+    def listen(self, topic, message_type):
+        recorder = Recorder(topic, message_type)
+        self.addCleanup(recorder.stop)
+        wait_until(recorder.connected, topic)
+        return recorder
+
+    def drive(self, topic, linear, angular):
+        publisher = rospy.Publisher(topic, Twist, queue_size=1)
+        self.addCleanup(publisher.unregister)
+        wait_until(lambda: publisher.get_num_connections() > 0, topic)
+        twist = Twist()
+        twist.linear.x, twist.angular.z = linear, angular
+        publisher.publish(twist)
+        rospy.rostime.wallsleep(0.3)
+
+    def run_to(self, recorder, steps):
+        """The last message, of the last step."""
+        recorder.clear()
+        stamp = sim_client.step(steps).stamp
+        wait_until(lambda: any(m.header.stamp >= stamp - rospy.Duration(0.0199) for m in recorder.messages()), "odometry")
+        return recorder.messages()[-1]
+
+    def assert_arc(self, first, last, delta):
+        x, y, turned = after_arc(first.pose.pose, (last.header.stamp - first.header.stamp).to_sec())
+        self.assertAlmostEqual(last.pose.pose.position.x, x, delta=delta)
+        self.assertAlmostEqual(last.pose.pose.position.y, y, delta=delta)
+        self.assertAlmostEqual(math.remainder(heading(last.pose.pose) - turned, 2 * math.pi), 0, delta=delta)
+
+    def test_a_plugin_drives_a_circle_and_tells_of_it(self):
+        odometry, truth, tf = self.listen("/odom", Odometry), self.listen("/ground_truth/odom", Odometry), self.listen("/tf", TFMessage)
+        self.drive("/cmd_vel", SPEED, TURN)
+        first, true_first = self.run_to(odometry, 1000), truth.messages()[-1]
+        tf.clear()
+        last, true_last = self.run_to(odometry, 3000), truth.messages()[-1]
+        self.assertEqual((last.header.frame_id, last.child_frame_id), ("odom", "base_link"))
+        self.assertEqual(last.pose.covariance[0], 1e-5)
+        self.assertAlmostEqual(last.twist.twist.linear.x, SPEED, delta=1e-4)
+        self.assertAlmostEqual(last.twist.twist.angular.z, TURN, delta=1e-4)
+        self.assert_arc(first, last, 1e-4)
+        self.assertAlmostEqual(math.hypot(true_last.pose.pose.position.x - last.pose.pose.position.x,
+                                          true_last.pose.pose.position.y - last.pose.pose.position.y), 0, delta=0.02)
+        self.assert_arc(true_first, true_last, 0.02)
+        parents = {t.child_frame_id: t.header.frame_id for m in tf.messages() for t in m.transforms}
+        self.assertEqual(parents.get("base_link"), "odom")
+        self.assertEqual([t.header.frame_id for m in tf.messages() for t in m.transforms if t.child_frame_id == "base_link"].count("world"), 0)
+
+    def test_controllers_are_listed(self):
+        controllers = listed()
+        self.assertEqual(controllers[NAME].type, "diff_drive_controller/DiffDriveController")
+        self.assertEqual(controllers[NAME].state, "running")
+        self.assertEqual(list(controllers[NAME].claimed_resources[0].resources), ["left_axle", "right_axle"])
+        others = controllers["joint_trajectory_controller"]
+        self.assertEqual((others.state, list(others.claimed_resources[0].resources)), ("running", ["pan"]))
+        self.assertEqual(set(listed("/second")), {NAME})
+
+    def test_a_faulty_twist_changes_nothing_and_is_told(self):
+        odometry = self.listen("/odom", Odometry)
+        self.drive("/cmd_vel", SPEED, 0)
+        self.drive("/cmd_vel", math.nan, 0)
+        last = self.run_to(odometry, 1000)
+        self.assertAlmostEqual(last.twist.twist.linear.x, SPEED, delta=1e-4)
+        wait_until(lambda: any("/cmd_vel" in m.msg and "linear.x" in m.msg for m in self.log.messages()), "a line about the twist")
+
+    def test_the_configurations_drive_stops_when_commands_end(self):
+        odometry = self.listen("/second/%s/odom" % NAME, Odometry)
+        self.drive("/second/%s/cmd_vel" % NAME, SPEED, 0)
+        moving = self.run_to(odometry, 500)
+        self.assertAlmostEqual(moving.pose.pose.position.y, 5, delta=1e-3)
+        self.assertAlmostEqual(moving.twist.twist.linear.x, SPEED, delta=0.02)
+        still = self.run_to(odometry, 1000)
+        self.assertAlmostEqual(still.twist.twist.linear.x, 0, delta=1e-4)
+        self.assertAlmostEqual(still.pose.pose.position.x, SPEED ** 2, delta=0.02)
+
+
+if __name__ == "__main__":
+    rospy.init_node("drive_test")
+    rostest.rosrun("blem_sim", "drive_test", DriveTest)
