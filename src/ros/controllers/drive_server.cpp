@@ -34,9 +34,8 @@ DriveServer::DriveServer(ros::NodeHandle robot_node, sim::DriveController contro
     : controller_(std::move(controller)),
       loop_(loop),
       schedule_(controller_.config().drive.publish_rate),
-      odometry_publisher_(ListenedPublisher::advertise<nav_msgs::Odometry>(
-          &robot_node, checked(controller_.config(), "odom_topic", odometryTopic(controller_.config())), DRIVE_QUEUE)),
-      transform_publisher_(ListenedPublisher::advertise<tf2_msgs::TFMessage>(&robot_node, "/tf", DRIVE_QUEUE)),
+      odometry_publisher_(&robot_node, checked(controller_.config(), "odom_topic", odometryTopic(controller_.config())), DRIVE_QUEUE),
+      transform_publisher_(&robot_node, "/tf", DRIVE_QUEUE),
       odometries_(withCovariances(controller_.config().drive)) {
   const std::string topic = checked(controller_.config(), "cmd_vel_topic", commandTopic(controller_.config()));
   commands_ =
@@ -53,16 +52,14 @@ void DriveServer::step(double time) {
 void DriveServer::publish(double time) {
   const sim::DriveOdometry odometry = controller_.odometry();
   const sim::RobotInfo& robot = robotInfo();
-  if (odometry_publisher_.listened()) {
-    const auto message = odometries_.spare();
-    message->header.stamp = toStamp(time);
-    message->header.frame_id = namedFrame(robot, controller_.config().drive.odom_frame);
-    message->child_frame_id = ownFrame(robot, robot.description->links[controller_.base()].name);
-    message->pose.pose = toPose(odometry.X_OB);
-    message->twist.twist = toTwist(odometry.v_OB, odometry.w_OB);
-    loop_->sender()->add(&odometry_publisher_, message);
-  }
-  if (controller_.config().drive.enable_odom_tf && transform_publisher_.listened()) publishTransform(time, odometry);
+  const auto message = odometries_.spare();
+  message->header.stamp = toStamp(time);
+  message->header.frame_id = namedFrame(robot, controller_.config().drive.odom_frame);
+  message->child_frame_id = ownFrame(robot, robot.description->links[controller_.base()].name);
+  message->pose.pose = toPose(odometry.X_OB);
+  message->twist.twist = toTwist(odometry.v_OB, odometry.w_OB);
+  loop_->sender()->add(&odometry_publisher_, message);
+  if (controller_.config().drive.enable_odom_tf) publishTransform(time, odometry);
 }
 
 void DriveServer::publishTransform(double time, const sim::DriveOdometry& odometry) {

@@ -13,12 +13,13 @@
 #include "controllers/controller_server.h"
 #include "loop/simulation_loop.h"
 #include "messages/message_pool.h"
-#include "sending/listened_publisher.h"
+#include "sending/greeting_publisher.h"
 #include "sending/publish_schedule.h"
 
 namespace blem_sim::node {
 
-/** Topics `cmd_vel` (geometry_msgs/Twist) and `odom` (nav_msgs/Odometry), below the controller's name or as told, and /tf. */
+/** Topics `cmd_vel` (geometry_msgs/Twist) and `odom` (nav_msgs/Odometry), below the controller's name or as told, and /tf. Late subscribers
+ * are told. */
 class DriveServer : public ControllerServer {
  public:
   /** @param robot_node in the robot's namespace @throws InputError: a topic that is none */
@@ -39,7 +40,8 @@ class DriveServer : public ControllerServer {
   sim::DriveController controller_;
   SimulationLoop* loop_;
   PublishSchedule schedule_;
-  ListenedPublisher odometry_publisher_, transform_publisher_;
+  GreetingPublisher<nav_msgs::Odometry> odometry_publisher_;
+  GreetingPublisher<tf2_msgs::TFMessage> transform_publisher_;
   MessagePool<nav_msgs::Odometry> odometries_;
   MessagePool<tf2_msgs::TFMessage> transforms_;
   ros::Subscriber commands_;

@@ -69,6 +69,16 @@ class MotorWriter {
     return config_.motors == MotorDefault::FREE;
   }
 
+  /** True for a wheel that a drive keeps at its velocity, whatever the gains. */
+  bool isDriven(const std::string& joint) const {
+    const auto has = [&](const ControllerConfig& controller) {
+      const std::vector<std::string>& joints = controller.joints;
+      return controller.kind == ControllerKind::DRIVE && std::find(joints.begin(), joints.end(), joint) != joints.end();
+    };
+    const std::vector<ControllerConfig> controllers = config_.controllers.value_or(std::vector<ControllerConfig>());
+    return std::any_of(config_.drives.begin(), config_.drives.end(), has) || std::any_of(controllers.begin(), controllers.end(), has);
+  }
+
   double velocityLimit(const model::LumpedJoint& joint) {
     const double limit = byJoint(config_.velocity_limits, joint.name, joint.limits.velocity);
     if (limit > 0) return limit;
@@ -80,13 +90,13 @@ class MotorWriter {
     if (const JointGains* given = givenGains(joint.name)) {
       settings->gains = *given;
     } else if (isFree(joint.name)) {
-      free_.push_back(joint.name);
+      if (!isDriven(joint.name)) free_.push_back(joint.name);
     } else {
       if (settings->law == MotorLaw::PID) not_explicit_.push_back(joint.name);
       settings->law = MotorLaw::IMPLICIT_PD;
       settings->gains = computedGains(load, joint, settings->effort_limit);
       settings->velocity_gain = VELOCITY_TIME * settings->gains.p;
-      computed_.push_back(fmt::format("{} {:.3g} {:.3g}", joint.name, settings->gains.p, settings->gains.d));
+      if (!isDriven(joint.name)) computed_.push_back(fmt::format("{} {:.3g} {:.3g}", joint.name, settings->gains.p, settings->gains.d));
     }
   }
 

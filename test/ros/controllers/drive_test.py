@@ -5,19 +5,21 @@ import os
 import sys
 import unittest
 
+import rospkg
 import rospy
 import rostest
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Point, Pose, Twist
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Log
 from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
-from blem_sim.srv import ListControllers
+from blem_sim.srv import DeleteModel, ListControllers, SpawnModel
 from sim_client import PATIENCE, Recorder, wait_until
 
 NAME = "differential_drive_controller"
+ROVER = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros", "rover.urdf")
 SPEED, TURN = 0.5, 0.5  # [m/s], [rad/s]
 
 
@@ -98,6 +100,23 @@ class DriveTest(unittest.TestCase):
         others = controllers["joint_trajectory_controller"]
         self.assertEqual((others.state, list(others.claimed_resources[0].resources)), ("running", ["pan"]))
         self.assertEqual(set(listed("/second")), {NAME})
+
+    def test_a_spawned_robot_is_driven_in_its_namespace_and_goes(self):
+        with open(ROVER) as stream:
+            spawned = sim_client.service("spawn_urdf_model", SpawnModel)("third", stream.read(), "third", Pose(position=Point(0, -5, 0.1)), "")
+        self.assertTrue(spawned.success, spawned.status_message)
+        self.assertIn("%s (on /third/cmd_vel)" % NAME, spawned.status_message)
+        odometry = self.listen("/third/odom", Odometry)
+        self.drive("/third/cmd_vel", SPEED, 0)
+        self.assertAlmostEqual(self.run_to(odometry, 1000).pose.pose.position.x, SPEED * (1 - SPEED / 2), delta=0.01)
+        self.assertTrue(sim_client.service("delete_model", DeleteModel)("third").success)
+        wait_until(lambda: "/third/odom" not in dict(rospy.get_published_topics()), "the end of its topics")
+        sim_client.step(1)
+
+    def test_odometry_and_frames_are_told_during_a_pause(self):
+        late, tf = self.listen("/odom", Odometry), self.listen("/tf", TFMessage)
+        late.wait_for(1)
+        wait_until(lambda: any(t.child_frame_id == "base_link" for m in tf.messages() for t in m.transforms), "the frame of the base")
 
     def test_a_faulty_twist_changes_nothing_and_is_told(self):
         odometry = self.listen("/odom", Odometry)

@@ -137,6 +137,7 @@ TEST(GazeboDrives, ARobotLeavesTopicAndFrameToItsDrive) {
   EXPECT_TRUE(info.odom_tf);
   EXPECT_EQ(info.odom.topic, "ground_truth/odom");
   EXPECT_EQ(toldTimes(simulator.notes(), "/odom has the odometry of 'wheels'; the truth is on ground_truth/odom"), 1);
+  EXPECT_EQ(toldTimes(simulator.notes(), "joints without gains"), 0) << "a wheel needs none";
   DriveController drive(&simulator, 0, info.drives.front());
   drive.start();
   drive.command({0.3, 0});
