@@ -140,6 +140,7 @@ inline void tearAway(const std::string& model, Simulator* simulator) {
   BodyLoad load;
   load.body = simulator->models()[simulator->modelIndex(model)].bodies[0];
   load.wrench.force.x() = LARGEST_COMMAND;
+  load.p_B = Vector3::Zero();
   simulator->applyLoad(load, {0, -1});
 }
 
