@@ -43,7 +43,9 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
 
 CollisionGeometry::CollisionGeometry(std::shared_ptr<const geometry::TriangleMesh> mesh,
                                      std::shared_ptr<const geometry::MeshTopology> topology, std::optional<geometry::Cylinder> cylinder)
-    : mesh_(std::move(mesh)), topology_(std::move(topology)), cylinder_(std::move(cylinder)) {
+    : mesh_(std::move(mesh)),
+      topology_(std::move(topology)),
+      cylinder_(cylinder ? std::make_shared<const geometry::Cylinder>(*cylinder) : nullptr) {
   if (!mesh_ || mesh_->elements.empty()) throw InputError("collision geometry: the mesh has no element; leave the collider out");
   kernels::kernels();  // bad settings are told here, not in a step
   if (!topology_) topology_ = std::make_shared<const geometry::MeshTopology>(*mesh_);

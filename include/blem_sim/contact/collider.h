@@ -43,9 +43,9 @@ class CollisionGeometry {
 
   bool isHalfSpace() const { return mesh_ == nullptr; }
   const geometry::TriangleMesh& mesh() const { return *mesh_; }
-  bool hasOnlyTriangles() const { return only_triangles_; }  ///< at least one, and neither segments nor points
-  bool hasOnlyPoints() const { return only_points_; }        ///< at least one: a ball, or those of a cloud
-  const std::optional<geometry::Cylinder>& cylinder() const { return cylinder_; }
+  bool hasOnlyTriangles() const { return only_triangles_; }               ///< at least one, and neither segments nor points
+  bool hasOnlyPoints() const { return only_points_; }                     ///< at least one: a ball, or those of a cloud
+  const geometry::Cylinder* cylinder() const { return cylinder_.get(); }  ///< null: none
   const geometry::MeshTopology& topology() const { return *topology_; }
   const geometry::Bvh& bvh() const { return bvh_; }
   /** Per node of the tree: whether an element below it owns a vertex or an edge. Two nodes that own nothing have no contact. */
@@ -63,10 +63,10 @@ class CollisionGeometry {
 
   std::shared_ptr<const geometry::TriangleMesh> mesh_;
   std::shared_ptr<const geometry::MeshTopology> topology_;
+  std::shared_ptr<const geometry::Cylinder> cylinder_;
   geometry::Bvh bvh_;
   std::vector<std::uint8_t> owners_;
   std::uint64_t identity_ = 0;
-  std::optional<geometry::Cylinder> cylinder_;
   bool only_triangles_ = false, only_points_ = false;
   Box bounds_;
   Vector3 normal_ = Vector3::UnitZ();
