@@ -43,7 +43,7 @@ struct DriveConfig {
 struct ControllerConfig {
   std::string name = "joint_trajectory_controller";
   ControllerKind kind = ControllerKind::TRAJECTORY;
-  /** Of a trajectory controller, empty: all that have a motor; of a gripper the one that its motor moves; of a drive left and right wheels.
+  /** Joints that it moves: of a trajectory controller all that have a motor if empty, of a gripper one, of a drive left and right wheels.
    */
   std::vector<std::string> joints;
   double action_monitor_rate = 20;  ///< [Hz] of the action's feedback; 0 = every step, RATE_OFF = never

@@ -16,7 +16,7 @@ struct DriveTwist {
   double angular = 0;  ///< [rad/s] to the left
 };
 
-/** Where the base is, and how it moves. */
+/** Pose and velocity of the base. */
 struct DriveOdometry {
   Pose X_OB = Pose::Identity();    ///< in the frame of odometry: where the encoder's began, or the world
   Vector3 v_OB = Vector3::Zero();  ///< [m/s] in the base's axes

@@ -86,7 +86,8 @@ void RoundSide::move(Contact* contact) const {
   if (contact->pierced) return;
   if (other_.collider.geometry->cylinder() && isRound(own) && isRound(other)) {
     const int own_rim = rimOf(*own_.collider.geometry, own), other_rim = rimOf(*other_.collider.geometry, other);
-    if (other_rim < 0 ? own_rim >= 0 || is_a_ : own_rim >= 0 && is_a_) atCylinder(own_rim, contact);
+    const bool asks = (own_rim < 0) == (other_rim < 0) ? is_a_ : own_rim >= 0;  // once for both: the side with a rim, else A
+    if (asks) atCylinder(own_rim, contact);
     rename(own_rim < 0 ? Feature{FeatureKind::FACE, 0} : rim(own_rim == 1), contact);
   } else if (other.kind == FeatureKind::FACE || other.kind == FeatureKind::HALF_SPACE) {
     if (isRim(cylinder_, own)) overPlane(own.index, contact);
@@ -154,7 +155,7 @@ void RoundSide::atPoint(Contact* contact) const {
 }
 
 /**
- * Where mantle or rim meet the mantle or the rim of another cylinder: of two mantles the nearest points of the axes tell.
+ * Moves a contact of mantle or rim with those of another cylinder; two mantles meet where their axes are nearest.
  * @param own_rim as rimOf() tells
  */
 void RoundSide::atCylinder(int own_rim, Contact* contact) const {
@@ -193,7 +194,7 @@ void RoundSide::set(const Vector3& x, const Vector3& q, Contact* contact) const 
   rename(is_at_rim ? rim(x.z() > 0) : Feature{FeatureKind::FACE, 0}, contact);
 }
 
-/** Of contacts with one name, which several sides of a mesh had, the deepest stays. */
+/** The deepest contact of each name stays: several sides of a mesh may have had it. */
 void dropRepeated(std::vector<Contact>* contacts) {
   std::sort(contacts->begin(), contacts->end(), [](const Contact& a, const Contact& b) {
     return a.id != b.id ? a.id < b.id : a.depth != b.depth ? a.depth > b.depth : contactBefore(a, b);

@@ -16,7 +16,7 @@ struct FileStamp {
   bool operator!=(const FileStamp& other) const { return !(*this == other); }
 };
 
-/** Of what is no file, the same stamp always. */
+/** Stamp of a file; what is no file has always the same. */
 inline FileStamp stampOf(const std::string& file) {
   std::error_code failed;
   FileStamp stamp;

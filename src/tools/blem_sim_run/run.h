@@ -20,8 +20,8 @@ struct BatchSide {
 };
 
 /**
- * Where the state stopped being finite or a signal came, report and table tell of the time until there; a state is saved at a run's own end
- * alone. @param batch null for a single run, whose report goes to standard output unless options name a file @throws InputError
+ * Report and table end where the state stopped being finite or a signal came; a state is saved at a run's own end alone. @param batch null
+ * for a single run, whose report goes to standard output unless options name a file @throws InputError
  */
 RunEnd run(const RunOptions& options, BatchSide* batch);
 
