@@ -1,4 +1,5 @@
 // The meshes of plain shapes. All are wound outwards.
+#include <algorithm>
 #include <cmath>
 
 #include "blem_sim/geometry/cylinder.h"
@@ -58,6 +59,18 @@ std::optional<Cylinder> cylinderBehind(const TriangleMesh& mesh) {
     if (!((mesh.vertices[v] - expected).norm() < SAME * (cylinder.radius + cylinder.half_length))) return std::nullopt;
   }
   return cylinder;
+}
+
+double widestLayerInside(const Cylinder& cylinder) { return 0.5 * std::min(cylinder.radius, cylinder.half_length); }
+
+CylinderCore coreOf(const TriangleMesh& mesh, const Cylinder& cylinder, double layer) {
+  CylinderCore core{mesh, cylinder};
+  core.cylinder.radius -= layer;
+  core.cylinder.half_length -= layer;
+  const double across = core.cylinder.radius / cylinder.radius, along = core.cylinder.half_length / cylinder.half_length;
+  const Pose X_KG = cylinder.X_GK.inverse();
+  for (Vector3& v : core.mesh.vertices) v = cylinder.X_GK * Vector3(across, across, along).cwiseProduct(X_KG * v);
+  return core;
 }
 
 TriangleMesh gridMesh(double size_x, double size_y, int nx, int ny) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "blem_sim/geometry/cylinder.h"
+
 namespace blem_sim::geometry {
 namespace {
 
@@ -37,6 +39,20 @@ TEST(MeshShrinking, SphereAndCylinderKeepTheirOutside) {
   const TriangleMesh cylinder = shrinkMesh(cylinderMesh(0.05, 0.2), R, &what);
   EXPECT_LT(what.excess + what.shortfall, 1e-9);
   EXPECT_NEAR(cylinder.bounds().sizes().z(), 0.2 - 2 * R, 1e-12);
+}
+
+TEST(MeshShrinking, ACylindersCoreLacksALayerOnEverySide) {
+  const Pose X = makePose({1, 2, 3}, {0.4, 0.5, 0.6});
+  const TriangleMesh mesh = transformed(cylinderMesh(0.05, 0.2), X);
+  const std::optional<Cylinder> cylinder = cylinderBehind(mesh);
+  ASSERT_TRUE(cylinder);
+  EXPECT_NEAR(widestLayerInside(*cylinder), 0.025, 1e-12);
+  const CylinderCore core = coreOf(mesh, *cylinder, R);
+  const TriangleMesh expected = transformed(cylinderMesh(0.05 - R, 0.2 - 2 * R), X);
+  for (std::size_t v = 0; v < expected.vertices.size(); ++v) EXPECT_NEAR((core.mesh.vertices[v] - expected.vertices[v]).norm(), 0, 1e-12);
+  EXPECT_EQ(core.mesh.elements, expected.elements);
+  EXPECT_NEAR(core.cylinder.radius, 0.05 - R, 1e-12);
+  EXPECT_NEAR(core.cylinder.half_length, 0.1 - R, 1e-12);
 }
 
 TEST(MeshShrinking, SaysWhyItCannot) {

@@ -7,7 +7,7 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double WHEEL = 0.05, LAYER_OF_WHEEL = 0.0025, WHEEL_MASS = 0.2, CHASSIS_MASS = 4;  // [m], [kg]
+constexpr double WHEEL = 0.05, WHEEL_MASS = 0.2, CHASSIS_MASS = 4;  // [m], [kg]
 constexpr double WHEEL_INERTIA = 0.5 * WHEEL_MASS * WHEEL * WHEEL;
 
 std::string inertial(double mass, const Vector3& inertia) {
@@ -30,7 +30,7 @@ RobotConfig cart() {
                           name, inertial(WHEEL_MASS, Vector3::Constant(WHEEL_INERTIA)), cylinder(WHEEL, 0.03), x, y);
     }
   RobotConfig config = robot("cart", urdf + "</robot>", false);
-  config.X_WR = makePose({-1.5, 0, WHEEL + LAYER_OF_WHEEL});
+  config.X_WR = makePose({-1.5, 0, WHEEL});
   return config;
 }
 
@@ -65,8 +65,8 @@ TEST(Wheels, ACartRollsDownASlopeAsItsInertiaLetsIt) {
       lowest = std::min(lowest, height);
       highest = std::max(highest, height);
     }
-    const double mass = CHASSIS_MASS + 4 * WHEEL_MASS, radius = WHEEL + LAYER_OF_WHEEL;
-    const double theory = mass * G * std::sin(SLOPE) / (mass + 4 * WHEEL_INERTIA / (radius * radius));
+    const double mass = CHASSIS_MASS + 4 * WHEEL_MASS;
+    const double theory = mass * G * std::sin(SLOPE) / (mass + 4 * WHEEL_INERTIA / (WHEEL * WHEEL));
     const dynamics::BodyState after = bodyOf(simulator, "cart");
     EXPECT_NEAR(after.v_WCom.x() - before.v_WCom.x(), theory, 1e-8) << ground.name;
     EXPECT_NEAR(after.X_WB.translation().y(), 0, 1e-9) << ground.name;
@@ -91,7 +91,7 @@ TEST(Wheels, WheelsThatSpinPushAsFrictionLetsThem) {
       for (long i = 0; i < steps; ++i) simulator.step();
       const dynamics::BodyState after = bodyOf(simulator, "cart");
       EXPECT_NEAR(after.v_WCom.x(), 0.8 * G * 0.5, 1e-5) << time_step << " " << ground.name;
-      EXPECT_NEAR(after.X_WB.translation().z(), WHEEL + LAYER_OF_WHEEL, 1e-6) << time_step << " " << ground.name;
+      EXPECT_NEAR(after.X_WB.translation().z(), WHEEL, 1e-6) << time_step << " " << ground.name;
     }
 }
 
@@ -101,7 +101,7 @@ ObjectConfig lyingLog(double length) {
   log.name = "log";
   const double along = 0.5 * WHEEL * WHEEL, across = (3 * WHEEL * WHEEL + length * length) / 12;
   log.urdf_xml = "<robot name='log'><link name='log'>" + inertial(1, {across, across, along}) + cylinder(WHEEL, length) + "</link></robot>";
-  log.X_WO = makePose({0, 0, WHEEL + LAYER_OF_WHEEL}, {-M_PI / 2, 0, 0});
+  log.X_WO = makePose({0, 0, WHEEL}, {-M_PI / 2, 0, 0});
   return log;
 }
 
@@ -115,8 +115,7 @@ TEST(Wheels, ALogThatSlidesEndsUpRolling) {
     config.objects[0].linear_velocity = {2, 0, 0};
     Simulator simulator(config, model::UriResolver());
     for (int i = 0; i < std::lround(1 / time_step); ++i) simulator.step();
-    const double radius = WHEEL + LAYER_OF_WHEEL, inertia = 0.5 * WHEEL * WHEEL / (radius * radius);
-    EXPECT_NEAR(bodyOf(simulator, "log").v_WCom.x(), 2 / (1 + inertia), 1e-6) << time_step;
+    EXPECT_NEAR(bodyOf(simulator, "log").v_WCom.x(), 2 / 1.5, 1e-6) << time_step;
   }
 }
 
@@ -134,7 +133,7 @@ TEST(Wheels, ALogThatSpinsBouncesAsItsRestitutionSays) {
   double apex = 0;
   for (int i = 0; i < 2 * fall; ++i) {
     simulator.step();
-    if (i > fall + 5) apex = std::max(apex, bodyOf(simulator, "log").X_WB.translation().z() - WHEEL - LAYER_OF_WHEEL);
+    if (i > fall + 5) apex = std::max(apex, bodyOf(simulator, "log").X_WB.translation().z() - WHEEL);
   }
   EXPECT_NEAR(apex / DROP, RESTITUTION * RESTITUTION, 1e-4);
   EXPECT_NEAR((bodyOf(simulator, "log").w_WB - Vector3(0, 40, 0)).norm(), 0, 1e-6);
@@ -151,7 +150,7 @@ TEST(Wheels, ALogThatLiesOnTwoRollersTurnsAgainstThem) {
   config.robots = {robot("rollers", urdf + "</robot>", true)};
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
   config.robots[0].gains["default"] = {0, 0, 10};
-  const double reach = WHEEL + LOG + 2 * LAYER_OF_WHEEL, height = std::sqrt(reach * reach - APART * APART);
+  const double reach = WHEEL + LOG, height = std::sqrt(reach * reach - APART * APART);
   ObjectConfig log;
   log.name = "log";
   log.urdf_xml = "<robot name='log'><link name='log'>" + inertial(1, {0.004, 0.004, 0.0008}) + cylinder(LOG, 0.2) + "</link></robot>";
@@ -167,7 +166,7 @@ TEST(Wheels, ALogThatLiesOnTwoRollersTurnsAgainstThem) {
   }
   EXPECT_LT(off, 1e-6);
   const Vector3 spin = bodyOf(simulator, "log").w_WB;
-  EXPECT_NEAR((spin + SPEED * (WHEEL + LAYER_OF_WHEEL) / (LOG + LAYER_OF_WHEEL) * Vector3::UnitY()).norm(), 0, 1e-6);
+  EXPECT_NEAR((spin + SPEED * WHEEL / LOG * Vector3::UnitY()).norm(), 0, 1e-6);
 }
 
 /** A coin of 1 kg that leans by 0.3 rad to the left and rolls on a circle about the origin. */
@@ -182,7 +181,7 @@ struct RollingCoin {
   RollingCoin() {
     const Vector3 inwards = Vector3::UnitY(), up = Vector3::UnitZ(), ahead = Vector3::UnitX();
     const Vector3 axis = std::cos(LEAN) * inwards - std::sin(LEAN) * up;
-    const Vector3 arm = -RADIUS * (std::sin(LEAN) * inwards + std::cos(LEAN) * up) + 0.5 * LENGTH * axis - LAYER * up;
+    const Vector3 arm = (LAYER - RADIUS) * (std::sin(LEAN) * inwards + std::cos(LEAN) * up) + (0.5 * LENGTH - LAYER) * axis - LAYER * up;
     const double rate = -(CIRCLE + up.cross(arm).x()) / axis.cross(arm).x();  // spin about the axis over that about the vertical
     const Vector3 spin_1 = up + rate * axis;
     const Vector3 momentum_1 = ACROSS * spin_1 + (ALONG - ACROSS) * spin_1.dot(axis) * axis;

@@ -15,7 +15,19 @@ struct Cylinder {
   int sides = 0;                 ///< of the mesh
 };
 
-/** The cylinder behind a mesh by cylinderMesh that was moved, turned or shrunk; none if its rims have no common radius. */
+/** The cylinder behind a mesh by cylinderMesh that was moved or turned; none if its rims have no common radius. */
 std::optional<Cylinder> cylinderBehind(const TriangleMesh& mesh);
+
+/** Largest layer [m] that a cylinder has room for inside: half of its radius and of its half length. */
+double widestLayerInside(const Cylinder& cylinder);
+
+/** A cylinder less a layer inside, and its mesh. */
+struct CylinderCore {
+  TriangleMesh mesh;
+  Cylinder cylinder;
+};
+
+/** @param mesh of the cylinder @param layer [m] thickness, at most widestLayerInside */
+CylinderCore coreOf(const TriangleMesh& mesh, const Cylinder& cylinder, double layer);
 
 }  // namespace blem_sim::geometry

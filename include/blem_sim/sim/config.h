@@ -45,7 +45,7 @@ struct ContactOverrides {
 
 struct ContactConfig {
   BoundaryWidth boundary_width = 0.0025;  ///< robots and objects; environments default to 0, or are chosen as well
-  bool shrink = false;                    ///< meshes by their boundary_width, so that outer dimensions stay (shrinkMesh)
+  bool shrink = false;  ///< meshes by their boundary_width, so that outer dimensions stay (shrinkMesh); cylinders of a URDF always
   contact::SurfaceProperties surface;
   contact::FrictionRule friction_rule = contact::FrictionRule::MIN;
   int max_contacts_per_robot = 50;

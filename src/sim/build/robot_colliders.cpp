@@ -29,8 +29,8 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
       ContactSettings settings = of_link;
       const auto geometry = surfaces->geometry(shape.mesh, nullptr, shape.cylinder);
       surfaces->chooseWidth(*geometry, needs, shape.radius, &settings, &report);
-      collider.geometry = surfaces->fitted(geometry, settings, shape.radius, &report);
-      const bool has_layer = !(shape.radius > 0) && !settings.shrink;
+      surfaces->fit(geometry, settings, shape.radius, &report, &collider);
+      const bool has_layer = !(shape.radius > 0) && !collider.outside;
       const double width = shape.radius > 0 ? shape.radius : settings.boundary_width.metres;
       own_.push_back({world_->addCollider(collider, width, settings.surface, report), has_layer ? width : 0});
     }

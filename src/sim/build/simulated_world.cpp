@@ -112,6 +112,7 @@ void SimulatedWorld::removeColliders(const std::vector<int>& removed) {
   for (const int collider : removed) {
     colliders[collider].enabled = false;
     colliders[collider].geometry.reset();
+    colliders[collider].outside.reset();
     free_colliders_.insert(collider);
   }
   const auto is_removed = [&](int collider) { return std::binary_search(removed.begin(), removed.end(), collider); };

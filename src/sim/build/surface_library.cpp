@@ -116,34 +116,55 @@ double SurfaceLibrary::noiseOf(const contact::CollisionGeometry& geometry) {
 
 void SurfaceLibrary::chooseWidth(const contact::CollisionGeometry& geometry, WidthNeeds needs, double own_radius, ContactSettings* settings,
                                  geometry::MeshReport* report) {
-  if (!settings->boundary_width.automatic || own_radius > 0) return;
-  needs.side = geometry.isHalfSpace() ? 0 : smallestSide(geometry.mesh(), report->closed);
-  // Scans have borders; small parts of closed CAD models bend from vertex to vertex as noise does.
-  needs.noise = needs.drawn || report->closed ? 0 : noiseOf(geometry);
-  needs.stiffness = settings->surface.stiffness;
-  needs.time_step = time_step_;
-  const ChosenWidth chosen = chosenWidth(needs);
-  settings->boundary_width = chosen.width;
-  report->notes.push_back(fmt::format("boundary_width: auto is {:.3g} mm: {}", 1e3 * chosen.width, chosen.why));
+  if (own_radius > 0) return;
+  if (settings->boundary_width.automatic) {
+    needs.side = geometry.isHalfSpace() ? 0 : smallestSide(geometry.mesh(), report->closed);
+    // Scans have borders; small parts of closed CAD models bend from vertex to vertex as noise does.
+    needs.noise = needs.drawn || report->closed ? 0 : noiseOf(geometry);
+    needs.stiffness = settings->surface.stiffness;
+    needs.time_step = time_step_;
+    const ChosenWidth chosen = chosenWidth(needs);
+    settings->boundary_width = chosen.width;
+    report->notes.push_back(fmt::format("boundary_width: auto is {:.3g} mm: {}", 1e3 * chosen.width, chosen.why));
+  }
+  if (!geometry.cylinder()) return;
+  const double widest = geometry::widestLayerInside(*geometry.cylinder());
+  if (settings->boundary_width.metres <= widest) return;
+  report->notes.push_back(fmt::format("boundary_width: {:.3g} mm is narrowed to {:.3g} mm, half of the cylinder's radius or half length",
+                                      1e3 * settings->boundary_width.metres, 1e3 * widest));
+  settings->boundary_width = widest;
 }
 
-std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::fitted(const std::shared_ptr<const contact::CollisionGeometry>& geometry,
-                                                                         const ContactSettings& settings, double own_radius,
-                                                                         geometry::MeshReport* report) {
+std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::makeShrunk(
+    const std::shared_ptr<const contact::CollisionGeometry>& geometry, double r, Shrunk* held) {
+  std::shared_ptr<const contact::CollisionGeometry> made;
+  if (const geometry::Cylinder* cylinder = geometry->cylinder()) {
+    geometry::CylinderCore core = geometry::coreOf(geometry->mesh(), *cylinder, r);
+    made = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(core.mesh)), nullptr,
+                                                              core.cylinder);
+    *held = {geometry, made, false, fmt::format("layer of {:.3g} mm inside; outer dimensions stay", 1e3 * r)};
+  } else {
+    geometry::MeshShrinking what;
+    made = std::make_shared<const contact::CollisionGeometry>(
+        std::make_shared<const geometry::TriangleMesh>(geometry::shrinkMesh(geometry->mesh(), r, &what)));
+    *held = {geometry, made, !what.refused.empty(), wordsFor(what, r)};
+  }
+  return made;
+}
+
+void SurfaceLibrary::fit(const std::shared_ptr<const contact::CollisionGeometry>& geometry, const ContactSettings& settings,
+                         double own_radius, geometry::MeshReport* report, contact::Collider* collider) {
+  collider->geometry = geometry;
   const double r = settings.boundary_width.metres;
-  if (!settings.shrink || geometry->isHalfSpace() || own_radius > 0 || !(r > 0)) return geometry;
+  if (geometry->isHalfSpace() || own_radius > 0 || !(r > 0) || (!settings.shrink && !geometry->cylinder())) return;
   Shrunk& held = shrunk_[{geometry.get(), r}];
   std::shared_ptr<const contact::CollisionGeometry> made = held.geometry.lock();
   // Another geometry may have got the address of one that is gone.
-  if (!made || held.original.lock() != geometry) {
-    geometry::MeshShrinking what;
-    const auto mesh = std::make_shared<const geometry::TriangleMesh>(geometry::shrinkMesh(geometry->mesh(), r, &what));
-    made = std::make_shared<const contact::CollisionGeometry>(mesh, nullptr,
-                                                              geometry->cylinder() ? geometry::cylinderBehind(*mesh) : std::nullopt);
-    held = {geometry, made, wordsFor(what, r)};
-  }
+  if (!made || held.original.lock() != geometry) made = makeShrunk(geometry, r, &held);
   report->notes.push_back(held.note);
-  return made;
+  if (held.refused) return;
+  collider->geometry = made;
+  collider->outside = geometry;
 }
 
 }  // namespace blem_sim::sim

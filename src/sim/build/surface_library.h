@@ -43,19 +43,19 @@ class SurfaceLibrary {
                                                              const std::shared_ptr<const geometry::MeshTopology>& topology = nullptr,
                                                              const std::optional<geometry::Cylinder>& cylinder = std::nullopt);
   /**
-   * Chooses the boundary width where the settings leave it open.
-   * @param needs of its use; those of the geometry and the settings are found here @param own_radius as in fitted
+   * Chooses the boundary width where the settings leave it open, and narrows that of a cylinder to what it has room for inside.
+   * @param needs of its use; those of the geometry and the settings are found here @param own_radius as in fit
    * @param report of the geometry: notes the choice and why
    */
   void chooseWidth(const contact::CollisionGeometry& geometry, WidthNeeds needs, double own_radius, ContactSettings* settings,
                    geometry::MeshReport* report);
   /**
-   * The geometry, moved inwards by its boundary width if the settings ask for it.
+   * Gives a collider the geometry, moved inwards by its boundary width if it is a cylinder or if the settings ask for it.
    * @param own_radius [m] > 0 if it is its own boundary: then it stays @param report notes what was done, and failures
+   * @param collider gets geometry and outside
    */
-  std::shared_ptr<const contact::CollisionGeometry> fitted(const std::shared_ptr<const contact::CollisionGeometry>& geometry,
-                                                           const ContactSettings& settings, double own_radius,
-                                                           geometry::MeshReport* report);
+  void fit(const std::shared_ptr<const contact::CollisionGeometry>& geometry, const ContactSettings& settings, double own_radius,
+           geometry::MeshReport* report, contact::Collider* collider);
 
   /** Number of known surfaces, those that nobody holds any more included: at most twice as many as are held, or 48. */
   std::size_t remembered() const;
@@ -66,8 +66,11 @@ class SurfaceLibrary {
 
   struct Shrunk {
     std::weak_ptr<const contact::CollisionGeometry> original, geometry;
+    bool refused = false;
     std::string note;
   };
+  static std::shared_ptr<const contact::CollisionGeometry> makeShrunk(const std::shared_ptr<const contact::CollisionGeometry>& geometry,
+                                                                      double r, Shrunk* held);
   struct Entry {
     std::weak_ptr<const contact::CollisionGeometry> geometry;
     double radius = 0;

@@ -142,11 +142,11 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   collider.X_BC = config.X_WE * Eigen::Translation3d(surface.origin);
   surfaces_.chooseWidth(*surface.geometry, needsOfEnvironment(), surface.radius, &settings, &surface.report);
   if (settings.shrink) watch.enter("shrinking", 1 - model::TREE_FRACTION);
-  collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
+  surfaces_.fit(surface.geometry, settings, surface.radius, &surface.report, &collider);
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width.metres;
   world->models[collider.model].X_WM = config.X_WE;
-  if (collider.geometry == surface.geometry) world->models[collider.model].file = fileThatShows(surface, config);
+  world->models[collider.model].file = fileThatShows(surface, config);
   world->addCollider(collider, width, settings.surface, surface.report);
   watch.loaded(sizeOf(*world, collider.model));
 }
@@ -238,7 +238,7 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   collider.body = body;
   collider.X_BC = X_OC;
   if (settings.shrink) watch->enter("shrinking", 1 - model::TREE_FRACTION);
-  collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
+  surfaces_.fit(surface.geometry, settings, surface.radius, &surface.report, &collider);
   world->addCollider(collider, width, settings.surface, surface.report);
   world->models[collider.model].bodies = {body};
 }
@@ -283,7 +283,7 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
       ContactSettings settings = of_link;
       const auto geometry = surfaces_.geometry(shape.mesh, nullptr, shape.cylinder);
       surfaces_.chooseWidth(*geometry, needs, shape.radius, &settings, &report);
-      collider.geometry = surfaces_.fitted(geometry, settings, shape.radius, &report);
+      surfaces_.fit(geometry, settings, shape.radius, &report, &collider);
       world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width.metres, settings.surface, report);
     }
   }

@@ -37,7 +37,7 @@ DrawnShape surfaceShape(const contact::Collider& collider, const sim::Colour& co
   DrawnShape shape;
   shape.body = collider.body;
   shape.colour = colour;
-  const geometry::TriangleMesh mesh = geometry::transformed(collider.geometry->mesh(), collider.X_BC);
+  const geometry::TriangleMesh mesh = geometry::transformed(collider.seen()->mesh(), collider.X_BC);
   const double radius = std::max(collider.radius, SMALLEST_ROD);
   shape.mesh.vertices = mesh.vertices;
   for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {

@@ -117,7 +117,8 @@ TEST(EnvironmentSlots, SurfacesThatNobodyHoldsAreForgotten) {
     settings.shrink = true;
     settings.boundary_width = 0.001;
     geometry::MeshReport report;
-    library.fitted(surface.geometry, settings, 0, &report);
+    contact::Collider collider;
+    library.fit(surface.geometry, settings, 0, &report, &collider);
     ASSERT_LE(library.remembered(), 3 * 16u) << i;
   }
 }

@@ -36,5 +36,45 @@ TEST(Shrinking, ReportSaysWhatStaysAndWhatDoesNot) {
   EXPECT_EQ(said(3).find("shrunk"), std::string::npos) << said(3);
 }
 
+ObjectConfig can(const std::string& name, double radius, double length, const Vector3& p) {
+  ObjectConfig object;
+  object.name = name;
+  object.urdf_xml = fmt::format(
+      R"(<robot name="can"><link name="can"><inertial><mass value="1"/><inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial>
+         <collision><geometry><cylinder radius="{}" length="{}"/></geometry></collision></link></robot>)",
+      radius, length);
+  object.X_WO = makePose(p);
+  return object;
+}
+
+TEST(Shrinking, CylindersOfAUrdfKeepTheirSizeAnyway) {
+  SimulationConfig config;
+  config.environments.resize(1);
+  config.environments[0].name = "plane";
+  config.environments[0].plane = Eigen::Vector4d(0, 0, 1, 0);
+  config.objects = {can("standing", 0.05, 0.1, {0, 0, 0.05}), can("lying", 0.05, 0.1, {1, 0, 0.05}),
+                    can("thin", 0.05, 0.002, {2, 0, 0.001})};
+  config.objects[1].X_WO.linear() = Eigen::AngleAxisd(M_PI / 2, Vector3::UnitX()).toRotationMatrix();
+  Simulator simulator(config, model::UriResolver());
+  stepFor(&simulator, 0.2);
+  EXPECT_NEAR(bodyOf(simulator, "standing").X_WB.translation().z(), 0.05, 1e-9);
+  EXPECT_NEAR(bodyOf(simulator, "lying").X_WB.translation().z(), 0.05, 1e-9);
+  EXPECT_NEAR(bodyOf(simulator, "thin").X_WB.translation().z(), 0.001, 1e-9);
+  EXPECT_EQ(simulator.loadReport()[1].boundary_width, 0.0025);
+  EXPECT_EQ(simulator.loadReport()[3].boundary_width, 0.0005);
+}
+
+TEST(Shrinking, WhatIsSeenIsTheSurfaceThatTheLayerReaches) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {can("can", 0.05, 0.1, {0, 0, 0.05}), box("cube", Vector3::Constant(0.1), 1, {1, 0, 0.05})};
+  config.objects[1].contact.shrink = true;
+  const Simulator simulator(config, model::UriResolver());
+  for (const contact::Collider& collider : simulator.colliders()) {
+    const double layer = collider.body < 0 ? 0 : 2 * 0.0025;
+    EXPECT_NEAR(collider.seen()->bounds().sizes().x() - collider.geometry->bounds().sizes().x(), layer, 1e-12) << collider.name;
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::sim

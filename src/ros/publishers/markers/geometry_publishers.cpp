@@ -87,11 +87,11 @@ MarkerStyle styleOf(const contact::Collider& collider, const sim::ModelInfo& mod
 }
 
 void tellPieces(const contact::Collider& collider, const std::string& name, std::size_t pieces) {
-  const std::size_t elements = collider.geometry->mesh().elements.size();
-  if (collider.geometry->hasOnlyTriangles())
+  const std::size_t elements = collider.seen()->mesh().elements.size();
+  if (collider.seen()->hasOnlyTriangles())
     ROS_INFO(
         "%s: rviz gets its %zu triangles in %zu pieces; it draws a mesh of over %zu in one piece where that is a binary .stl, .ply or "
-        ".obj file, not mirrored, shrunk or joined from points",
+        ".obj file, not mirrored or joined from points",
         name.c_str(), elements, pieces, MOST_TRIANGLES);
   else
     ROS_INFO("%s: rviz gets its %zu points in %zu pieces; a voxel_grid leaves fewer than %zu", name.c_str(), elements, pieces, MOST_DOTS);

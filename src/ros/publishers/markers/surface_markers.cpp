@@ -149,7 +149,7 @@ std::vector<Marker> surfaceMarkers(const contact::Collider& collider, const Mark
     addPlane(*collider.geometry, prototype, &markers);
     return markers;
   }
-  const geometry::TriangleMesh& mesh = collider.geometry->mesh();
+  const geometry::TriangleMesh& mesh = collider.seen()->mesh();
   if (style.file && mesh.elements.size() > MOST_TRIANGLES && rvizReads(*style.file)) return {fileMarker(*style.file, prototype)};
   addTriangles(mesh, prototype, &markers);
   addOthers(mesh, collider.radius, style.X_FC.linear().transpose() * style.up, prototype, &markers);

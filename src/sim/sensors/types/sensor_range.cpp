@@ -23,7 +23,7 @@ class RangeSensor : public Sensor {
     for (const contact::Collider& collider : step.world.colliders) {
       if (!collider.enabled) continue;
       const Pose X_WC = collider.body == dynamics::WORLD_BODY ? collider.X_BC : step.bodies[collider.body].X_WB * collider.X_BC;
-      view->targets.push_back({collider.geometry, X_WC, collider.radius, collider.model});
+      view->targets.push_back({collider.seen(), X_WC, collider.radius, collider.model});
     }
     if (config_.type == SensorType::DEPTH_CAMERA)
       *out = DepthCameraReading{std::move(view)};
