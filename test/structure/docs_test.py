@@ -10,8 +10,8 @@ from markdown import ELSEWHERE, headings, links, prose  # noqa: E402
 
 PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").rglob("*.md"))
 # Pages whose tables are read from top to bottom; one that does not exist is left out.
-SHORT_CELLS = ["docs/decisions.md", "docs/reduction.md", "docs/tour.md", "docs/validation.md"] + [
-    str(page.relative_to(ROOT)) for page in sorted((ROOT / "docs" / "validation").glob("*.md"))]
+SHORT_CELLS = ["docs/decisions.md", "docs/reduction.md", "docs/tour.md", "docs/validation.md", "docs/solver.md"] + [
+    str(page.relative_to(ROOT)) for folder in ("validation", "solver") for page in sorted((ROOT / "docs" / folder).glob("*.md"))]
 MOST_WORDS = 40
 
 SPAN = re.compile(r"`([^`]+)`")
