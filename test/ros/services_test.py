@@ -13,6 +13,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import Marker, MarkerArray
 
+from blem_sim.srv import Step, StepWithCommands
+
 import sim_client
 from sim_client import Recorder, wait_until
 
@@ -47,6 +49,14 @@ class ServicesTest(unittest.TestCase):
             time.sleep(0.2)
             self.assertEqual(len(self.clock.messages()), count)
             self.assertEqual(self.clock.messages()[-1].clock, answer.stamp)
+
+    def test_too_many_steps_are_refused(self):
+        first = sim_client.step(0).step
+        for name, kind in (("step", Step), ("step_with_commands", StepWithCommands)):
+            answer = sim_client.service(name, kind)(steps=4000000000)
+            self.assertFalse(answer.success)
+            self.assertIn("too many for one call", answer.status_message)
+        self.assertEqual(sim_client.step(0).step, first)
 
     def test_step_pauses_a_running_simulation(self):
         sim_client.unpause()

@@ -1,11 +1,13 @@
 #include "loop/simulation_loop.h"
 
+#include <fmt/format.h>
 #include <ros/console.h>
 #include <ros/init.h>
 #include <time.h>
 
 #include <algorithm>
 
+#include "blem_sim/geometry/input_error.h"
 #include "messages/status_text.h"
 
 namespace blem_sim::node {
@@ -84,6 +86,9 @@ void SimulationLoop::unpause() {
 }
 
 std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
+  if (count > MOST_STEPS)
+    throw InputError(fmt::format("steps: {} are too many for one call, during which the node hears nobody; make at most {} and call again",
+                                 count, MOST_STEPS));
   paused_ = true;
   for (const auto& publisher : publishers_) publisher->resumed();
   if (count > 0) actBeforeSteps(true);

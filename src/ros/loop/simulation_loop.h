@@ -17,6 +17,9 @@
 
 namespace blem_sim::node {
 
+/** Most steps that one call may ask for: the node hears nobody while it makes them. */
+constexpr std::uint32_t MOST_STEPS = 1000000;
+
 /** Time [s] of publishing in the stepping thread since the start. */
 struct PublishingTime {
   double wall = 0;
@@ -39,7 +42,7 @@ class SimulationLoop {
   void unpause();
 
   /** Pauses, makes `count` steps and sees their messages off. @return number of steps made: fewer if the node is shut down or a state
-   *  stopped being finite */
+   *  stopped being finite @throws InputError: more than MOST_STEPS, while which the node would hear nobody */
   std::uint32_t stepPaused(std::uint32_t count);
 
   void resetWorld() {
