@@ -22,7 +22,13 @@ def main():
     for path in sorted(pathlib.Path(sys.argv[1]).rglob("*.xml")):
         if "rosunit" in path.parts:
             continue
-        for case in ElementTree.parse(path).getroot().iter("testcase"):
+        try:
+            cases = list(ElementTree.parse(path).getroot().iter("testcase"))
+        except ElementTree.ParseError as error:  # of a program that was stopped
+            counts["failed"] += 1
+            print("FAILED %s: results are not whole: %s" % (path.stem, error))
+            continue
+        for case in cases:
             result = outcome(case)
             counts[result] += 1
             if result == "failed":

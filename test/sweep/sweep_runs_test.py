@@ -20,7 +20,8 @@ RULES = {"min": min, "harmonic_mean": lambda a, b: 2 * a * b / (a + b), "mean": 
 def test_the_example_slides_as_theory_says(case):
     """As far as steps of constant acceleration reach while the pair's friction is below tan(20 deg); else not at all."""
     shutil.copytree(str(EXAMPLE.parent), str(case.folder / "sweeps"))
-    case.write("sweep.yaml", EXAMPLE.read_text().replace("../..", str(ROOT)).replace("cube_on", "sweeps/cube_on").replace("steps: 11", "steps: 6"))
+    example = EXAMPLE.read_text().replace("../..", str(ROOT)).replace("cube_on", "sweeps/cube_on").replace("steps: 11", "steps: 6")
+    case.write("sweep.yaml", example[:example.index("plots:")])
     rows = case.run()
     assert len(rows) == 24
     for row in rows:

@@ -67,8 +67,8 @@ class Collection:
         del self.waiting[: len(batch)]
         for key in batch:
             self.prepare(key)
+        self.running.update(batch)  # first: an interrupt from here on lets them wait again
         self.store.begin(runner.start({key: self.store.run_folder(key) for key in batch}))
-        self.running.update(batch)
 
     def prepare(self, key):
         """Writes what a run's folder begins with."""
