@@ -5,8 +5,8 @@
 
 #include <boost/make_shared.hpp>
 
+#include "blem_sim/sim/link_motion.h"
 #include "messages/conversions.h"
-#include "messages/link_motion.h"
 
 namespace blem_sim::node {
 

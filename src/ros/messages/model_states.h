@@ -5,14 +5,14 @@
 
 #include <string>
 
+#include "blem_sim/sim/link_motion.h"
 #include "messages/conversions.h"
-#include "messages/link_motion.h"
 
 namespace blem_sim::node {
 
 /** @tparam States LinkStates or ModelStates */
 template <typename States>
-void append(const std::string& name, const LinkMotion& motion, States* states) {
+void append(const std::string& name, const sim::LinkMotion& motion, States* states) {
   states->name.push_back(name);
   states->pose.push_back(toPose(motion.X_WL));
   states->twist.push_back(toTwist(motion.v_WL, motion.w_WL));

@@ -1,9 +1,9 @@
 #include "publishers/robot_publishers.h"
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/link_motion.h"
 #include "messages/conversions.h"
 #include "messages/joint_messages.h"
-#include "messages/link_motion.h"
 #include "messages/ros_names.h"
 #include "publishers/robot_topics.h"
 
@@ -77,7 +77,7 @@ void OdometryPublisher::publish(const sim::StepReport& report) {
   if (!schedule_.due(report.time)) return;
   for (std::size_t i = 0; i < topics_.size(); ++i) {
     const sim::RobotInfo& robot = simulator_.robots()[i];
-    const LinkMotion root = linkMotion(simulator_, report, robot, robot.description->root);
+    const sim::LinkMotion root = linkMotion(simulator_, report, robot, robot.description->root);
     const auto message = topics_[i].messages.spare();
     message->header.stamp = toStamp(report.time);
     message->header.frame_id = namedFrame(robot, robot.odom.frame);

@@ -34,8 +34,8 @@ void MotionServices::setModelState(const ModelState& state) {
 
 void MotionServices::setLinkState(const LinkState& state) {
   const sim::LinkPart part = sim::findLink(*simulator_, state.link_name, "link_name");
-  const LinkMotion frame = frameMotion(*simulator_, state.reference_frame, "reference_frame");
-  const LinkMotion motion = inWorld(frame, state.pose, state.twist, "'" + state.link_name + "'");
+  const sim::LinkMotion frame = frameMotion(*simulator_, state.reference_frame, "reference_frame");
+  const sim::LinkMotion motion = inWorld(frame, state.pose, state.twist, "'" + state.link_name + "'");
   if (part.body != dynamics::WORLD_BODY) return simulator_->moveModel(part.body, bodyStateOf(*simulator_, part, motion));
   constexpr double SAME_PLACE = 1e-6;
   if (motion.X_WL.isApprox(part.X_BL, SAME_PLACE)) return;

@@ -72,8 +72,8 @@ void QueryServices::addModels(const sim::Simulator& simulator) {
   });
   services_.add<GetModelState>("get_model_state", [&simulator](const auto& request, auto* response) {
     const int model = sim::findModel(simulator, request.model_name, "model_name");
-    const LinkMotion frame = frameMotion(simulator, request.relative_entity_name, "relative_entity_name");
-    const LinkMotion motion = seenFrom(frame, modelMotion(simulator, simulator.report(), model));
+    const sim::LinkMotion frame = frameMotion(simulator, request.relative_entity_name, "relative_entity_name");
+    const sim::LinkMotion motion = seenFrom(frame, modelMotion(simulator, simulator.report(), model));
     response->header.stamp = toStamp(simulator.time());
     response->header.frame_id = frameName(request.relative_entity_name);
     response->pose = toPose(motion.X_WL);
@@ -84,8 +84,8 @@ void QueryServices::addModels(const sim::Simulator& simulator) {
 void QueryServices::addLinks(const sim::Simulator& simulator) {
   services_.add<GetLinkState>("get_link_state", [&simulator](const auto& request, auto* response) {
     const sim::LinkPart part = sim::findLink(simulator, request.link_name, "link_name");
-    const LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
-    const LinkMotion motion = seenFrom(frame, partMotion(simulator, part));
+    const sim::LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
+    const sim::LinkMotion motion = seenFrom(frame, partMotion(simulator, part));
     response->link_state.link_name = request.link_name;
     response->link_state.reference_frame = frameName(request.reference_frame);
     response->link_state.pose = toPose(motion.X_WL);

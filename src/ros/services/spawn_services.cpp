@@ -26,7 +26,7 @@ sim::RobotConfig robotOf(const sim::Simulator& simulator, const SpawnModel::Requ
   robot.motors = sim::MotorDefault::TRANSMISSIONS;
   robot.pid_gains = pidGainsIn(request.robot_namespace);
   robot.tf_prefix = tfPrefixIn(request.robot_namespace);
-  const LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
+  const sim::LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
   robot.X_WR = inWorld(frame, request.initial_pose, {}, "initial_pose").X_WL;
   return robot;
 }

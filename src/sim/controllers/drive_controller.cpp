@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/link_motion.h"
 #include "controllers/controlled_joints.h"
 
 namespace blem_sim::sim {
@@ -130,17 +131,9 @@ DriveOdometry DriveController::odometry() const {
 }
 
 DriveOdometry DriveController::worldOdometry() const {
-  const RobotInfo& info = robotInfo();
-  DriveOdometry odometry;
-  odometry.X_OB = simulator_->linkPose(robot(), base_);
-  const int body = info.bodies[info.lumped->link_placement[base_].body];
-  if (body == dynamics::WORLD_BODY) return odometry;
-  const dynamics::BodyState state = simulator_->world().bodyState(body);
-  const Vector3 p_WCom = state.X_WB * simulator_->world().bodySpec(body).inertial.com;
-  const Matrix3 R_BO = odometry.X_OB.linear().transpose();
-  odometry.v_OB = R_BO * (state.v_WCom + state.w_WB.cross(odometry.X_OB.translation() - p_WCom));
-  odometry.w_OB = R_BO * state.w_WB;
-  return odometry;
+  const LinkMotion base = linkMotion(*simulator_, simulator_->report(), robotInfo(), base_);
+  const Matrix3 R_BW = base.X_WL.linear().transpose();
+  return {base.X_WL, R_BW * base.v_WL, R_BW * base.w_WL};
 }
 
 }  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include "blem_sim/sim/named_parts.h"
 
-namespace blem_sim::node {
+namespace blem_sim::sim {
 
 struct LinkMotion {
   Pose X_WL = Pose::Identity();
@@ -12,15 +12,15 @@ struct LinkMotion {
 };
 
 /** Motion of a link, an object or an environment now. */
-LinkMotion partMotion(const sim::Simulator& simulator, const sim::LinkPart& part);
+LinkMotion partMotion(const Simulator& simulator, const LinkPart& part);
 
 /** @param link index into the robot's description */
-LinkMotion linkMotion(const sim::Simulator& simulator, const sim::StepReport& report, const sim::RobotInfo& robot, int link);
+LinkMotion linkMotion(const Simulator& simulator, const StepReport& report, const RobotInfo& robot, int link);
 
 /** Motion of a body's own frame. */
-LinkMotion bodyMotion(const sim::Simulator& simulator, const sim::StepReport& report, int body);
+LinkMotion bodyMotion(const Simulator& simulator, const StepReport& report, int body);
 
 /** Motion of a model: a robot's root link, the frame of an object's body, or an environment's geometry, which stands. */
-LinkMotion modelMotion(const sim::Simulator& simulator, const sim::StepReport& report, int model);
+LinkMotion modelMotion(const Simulator& simulator, const StepReport& report, int model);
 
-}  // namespace blem_sim::node
+}  // namespace blem_sim::sim
