@@ -32,12 +32,16 @@ void addPoints(const std::vector<Vector3>& points, const std::vector<sim::Colour
   for (std::size_t i = 0; i < points.size(); ++i) addColoured(geometry::transformed(ball, makePose(points[i])), colour(i), shape);
 }
 
-/** Triangles of a collider's mesh, and rods for its segments. @param points those of its elements that are points, in the body's frame */
-DrawnShape surfaceShape(const contact::Collider& collider, const sim::Colour& colour, std::vector<Vector3>* points) {
+/**
+ * Triangles of a collider's mesh, and rods for its segments.
+ * @param bare the mesh below its layer, where that lies inside, too @param points those of its elements that are points, in the body's
+ * frame
+ */
+DrawnShape surfaceShape(const contact::Collider& collider, bool bare, const sim::Colour& colour, std::vector<Vector3>* points) {
   DrawnShape shape;
   shape.body = collider.body;
   shape.colour = colour;
-  const geometry::TriangleMesh mesh = geometry::transformed(collider.seen()->mesh(), collider.X_BC);
+  const geometry::TriangleMesh mesh = geometry::transformed((bare ? collider.geometry : collider.seen())->mesh(), collider.X_BC);
   const double radius = std::max(collider.radius, SMALLEST_ROD);
   shape.mesh.vertices = mesh.vertices;
   for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {
@@ -128,7 +132,7 @@ std::vector<DrawnShape> worldShapes(const sim::Simulator& simulator, const ViewC
       continue;
     }
     std::vector<Vector3> points;
-    shapes.push_back(surfaceShape(collider, colour, &points));
+    shapes.push_back(surfaceShape(collider, layers, colour, &points));
     if (!points.empty()) {
       const bool by_height = kind == sim::ModelKind::ENVIRONMENT && points.size() > 1;
       DrawnShape balls;
