@@ -128,6 +128,9 @@ void meshHalfSpace(const MeshOverPlane& pair, double range, SearchRoom* room, Co
   }
 }
 
+/** [m] By how much contacts of a cylinder's mesh may be farther than those of the cylinder. */
+double bulgeOf(const CollisionGeometry& geometry) { return geometry.cylinder() ? geometry.cylinder()->bulge() : 0; }
+
 }  // namespace
 
 struct NarrowPhaseMemory::Impl {
@@ -164,21 +167,22 @@ void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowP
   const double r_a = a.collider.radius, r_b = b.collider.radius;
   out->layer = r_a + r_b;
   out->pierced = false;
+  const double range = out->layer + asked.margin, bulges = bulgeOf(*a.collider.geometry) + bulgeOf(*b.collider.geometry);
   const bool a_is_half_space = a.collider.geometry->isHalfSpace(), b_is_half_space = b.collider.geometry->isHalfSpace();
   if (a_is_half_space && b_is_half_space) {
     out->contacts.clear();
   } else if (b_is_half_space) {
-    meshHalfSpace({a, b, {Side::MOVING, {r_a, r_b}}}, out->layer + asked.margin, room, out);
+    meshHalfSpace({a, b, {Side::MOVING, {r_a, r_b}}}, range + bulges, room, out);
   } else if (a_is_half_space) {
-    meshHalfSpace({b, a, {Side::FIXED, {r_b, r_a}}}, out->layer + asked.margin, room, out);
+    meshHalfSpace({b, a, {Side::FIXED, {r_b, r_a}}}, range + bulges, room, out);
   } else {
-    const MeshPair pair = meshPair(a, b, asked.margin);
+    const MeshPair pair = meshPair(a, b, asked.margin + bulges);
     if (asked.memory)
       asked.memory->impl_->find(pair, asked.X_AB_apart, room, out);
     else
       meshMesh(pair, asked.X_AB_apart, nullptr, room, out);
   }
-  moveOntoCylinders(a, b, out->layer + asked.margin, out);
+  moveOntoCylinders(a, b, range, out);
 }
 
 }  // namespace blem_sim::contact

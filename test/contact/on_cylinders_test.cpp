@@ -148,6 +148,29 @@ TEST(OnCylinders, MantleAndRimsMeetAKerb) {
   }
 }
 
+/** The rim's lowest point is over a sheet, or beyond its border, however far beside it the vertices of the mesh are. */
+TEST(OnCylinders, RimsMeetTheBorderOfASheetWhereTheyLeaveIt) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI), beyond(-0.004, 0.004);
+  const Collider round = wheel(), sheet = makeCollider(geometry::transformed(geometry::gridMesh(1, 1, 3, 1), makePose({0.5, 0, 0})), 0);
+  for (const double lean : {0.2, 0.8})
+    for (int i = 0; i < 400; ++i) {
+      Pose X = rolled(0.2, lean, angle(random), angle(random));
+      const bool is_upper = X.linear()(2, 2) < 0;
+      const Vector3 axis = X.linear().col(2), down = (axis.z() * axis - Vector3::UnitZ()).normalized();
+      const Vector3 lowest = (is_upper ? HALF_WIDTH : -HALF_WIDTH) * axis + WHEEL * down;
+      const double x = beyond(random);
+      X.translation().x() = x - lowest.x();
+      double distance = INFINITY;
+      for (int k = 0; k < 100; ++k) {
+        distance = x >= 0 ? lowestOfRim(X, is_upper) : distanceFromEdge(X);
+        X.translation().z() -= distance - 1e-3;
+      }
+      const ContactManifold manifold = contactsOf(round, X, sheet, Pose::Identity());
+      EXPECT_NEAR(WHEEL_LAYER - manifold.maxDepth(), 1e-3, 1e-8) << lean << " " << i << " " << x;
+    }
+}
+
 /** Parallel wheels, one of them shifted along its axis, and crossed ones. */
 TEST(OnCylinders, CylindersMeetCylinders) {
   std::mt19937 random(4);

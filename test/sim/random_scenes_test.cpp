@@ -1,9 +1,11 @@
-// Three hundred random scenes, and some in which things happen; scripts/validate_random_scenes runs thousands, or one of them alone.
+// Three hundred random scenes, some of things that roll, and some in which things happen; scripts/validate_random_scenes runs thousands, or
+// one of them alone.
 #include <gtest/gtest.h>
 
 #include <utility>
 
 #include "support/random/eventful_scene.h"
+#include "support/random/round_scene.h"
 #include "support/sanitizers.h"
 
 namespace blem_sim::sim {
@@ -13,16 +15,17 @@ const int GROUPS = 20, SCENES_OF_GROUP = samples(15);
 constexpr double START = 0.15;  // [s] of each of three hundred: all of them in less than a minute
 
 /** @param options of the script that runs the scene again */
-void expectSound(const SceneOutcome& outcome, const char* options = "") {
+void expectSound(const SceneOutcome& outcome, const RandomScene& scene, const char* options = "") {
   EXPECT_FALSE(outcome.failed()) << outcome.failure << ": " << outcome.details << "\n"
-                                 << randomScene(outcome.seed).description << "\nscripts/validate_random_scenes" << options << " --seed "
-                                 << outcome.seed;
+                                 << scene.description << "\nscripts/validate_random_scenes" << options << " --seed " << outcome.seed;
 }
 
-void expectSound(std::uint64_t seed, double duration) {
+void expectSound(std::uint64_t seed, double duration, bool round = false) {
   SceneOutcome outcome;
-  runRandomScene(seed, duration, &outcome);
-  expectSound(outcome);
+  outcome.seed = seed;
+  const RandomScene scene = sceneOf(seed, round);
+  runRandomScene(scene, duration, &outcome);
+  expectSound(outcome, scene, round ? " --round" : "");
 }
 
 class RandomScenes : public ::testing::TestWithParam<int> {};
@@ -31,6 +34,13 @@ TEST_P(RandomScenes, StayFiniteAndGainNoEnergyUntold) {
   for (int i = 0; i < SCENES_OF_GROUP; ++i) expectSound(1 + static_cast<std::uint64_t>(GetParam() * SCENES_OF_GROUP + i), START);
 }
 INSTANTIATE_TEST_SUITE_P(Groups, RandomScenes, ::testing::Range(0, GROUPS));
+
+class RoundScenes : public ::testing::TestWithParam<int> {};
+
+TEST_P(RoundScenes, StaySoundAndGoThroughNoWall) {
+  for (int i = 0; i < samples(15); ++i) expectSound(1 + static_cast<std::uint64_t>(15 * GetParam() + i), 0.1, true);
+}
+INSTANTIATE_TEST_SUITE_P(Groups, RoundScenes, ::testing::Range(0, 8));
 
 /** Seeds that failed once, each for as long as it took [s]. */
 class RandomScenesFound : public ::testing::TestWithParam<std::pair<int, double>> {};
@@ -47,12 +57,12 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
 
 void expectSoundWhateverHappens(std::uint64_t seed, bool live = false) {
   SceneOutcome outcome;
-  EventfulScene(seed, live, &outcome).run(0.2);
-  expectSound(outcome, live ? " --live" : " --eventful");
+  const RandomScene scene = randomScene(seed);
+  EventfulScene(scene, seed, live, &outcome).run(0.2);
+  expectSound(outcome, scene, live ? " --live" : " --eventful");
 }
 
-std::uint64_t hashAfter(std::uint64_t seed, int threads, int steps) {
-  RandomScene scene = randomScene(seed);
+std::uint64_t hashAfter(RandomScene scene, int threads, int steps) {
   scene.config.solver.threads = threads;
   Simulator simulator(scene.config, model::UriResolver());
   commandRobots(scene, &simulator);
@@ -64,7 +74,9 @@ std::uint64_t hashAfter(std::uint64_t seed, int threads, int steps) {
 TEST(ThreadsOfRandomScenes, MakeTheSameBits) {
   for (int i = 0; i < samples(40); ++i) {
     const std::uint64_t seed = 103 + static_cast<std::uint64_t>(i);
-    EXPECT_EQ(hashAfter(seed, 1, 60), hashAfter(seed, 2, 60)) << randomScene(seed).description;
+    const RandomScene scene = randomScene(seed), round = roundScene(seed);
+    EXPECT_EQ(hashAfter(scene, 1, 60), hashAfter(scene, 2, 60)) << scene.description;
+    EXPECT_EQ(hashAfter(round, 1, 20), hashAfter(round, 2, 20)) << round.description;
   }
 }
 

@@ -69,6 +69,7 @@ class CentrePath {
     last_ = centre;
     return through;
   }
+  int thrown() const { return thrown_; }
 
  private:
   int thrown_, hit_;

@@ -1,6 +1,7 @@
 // The cylinder that a mesh of flat sides stands for.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "blem_sim/geometry/triangle_mesh.h"
@@ -13,6 +14,9 @@ struct Cylinder {
   double radius = 0;             ///< [m]
   double half_length = 0;        ///< [m]
   int sides = 0;                 ///< of the mesh
+
+  /** [m] By how much the mantle lies outside of the mesh in the middle of a side. */
+  double bulge() const { return radius * (1 - std::cos(M_PI / sides)); }
 };
 
 /** The cylinder behind a mesh by cylinderMesh that was moved or turned; none if its rims have no common radius. */

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "blem_sim/contact/contact_order.h"
+#include "cylinders/surface_descent.h"
 #include "evaluation/world_contact.h"
 #include "features/mesh_pair.h"
 #include "features/tolerances.h"
@@ -36,15 +37,16 @@ class RoundSide {
   Feature otherFeature(const Contact& contact) const { return featureOf(contact.id, !is_a_); }
   /** A rim as a whole; the middle of the flat end, which has no contacts, lends its name. */
   Feature rim(bool is_upper) const { return {FeatureKind::VERTEX, 2 * cylinder_.sides + is_upper}; }
-  void rename(const Feature& own, Contact* contact) const;
+  void rename(const Feature& own, const Feature& other, Contact* contact) const;
   /** Unit, in the cylinder's frame: towards the other surface. */
   Vector3 towardsOther(const Contact& contact) const { return X_WK_.linear().transpose() * (is_a_ ? -1 : 1) * contact.normal_BA; }
   void overPlane(int vertex, Contact* contact) const;
+  bool toWhatItMeets(int vertex, const Vector3& towards, Contact* contact) const;
   void atPoint(Contact* contact) const;
   void atCylinder(int own_rim, Contact* contact) const;
-  void set(const Vector3& x, const Vector3& q, Contact* contact) const;
+  bool set(const NearestPlace& place, Contact* contact) const;
   bool isOnMesh(const Vector3& p) const;
-  bool nearestPair(const Feature& other, Vector3* x, Vector3* q) const;
+  SurfaceDescent descent() const { return {cylinder_, *other_.collider.geometry, X_KO_, ROLLS}; }
 
   const PlacedCollider &own_, &other_;
   const geometry::Cylinder& cylinder_;
@@ -67,18 +69,9 @@ int rimOf(const CollisionGeometry& geometry, const Feature& feature) {
   return ends[0] % 2 == ends[1] % 2 ? ends[0] % 2 : -1;
 }
 
-/** Nearest point of mantle or rim to q, in the cylinder's frame. @return false if it is on a flat end, or q is inside */
-bool project(const geometry::Cylinder& cylinder, const Vector3& q, Vector3* x) {
-  const double from_axis = std::hypot(q.x(), q.y()), z = std::clamp(q.z(), -cylinder.half_length, cylinder.half_length);
-  if (from_axis <= cylinder.radius) return false;
-  *x = {cylinder.radius / from_axis * q.x(), cylinder.radius / from_axis * q.y(), z};
-  return true;
-}
-
-void RoundSide::rename(const Feature& own, Contact* contact) const {
-  if (!is_named_by_place_) return;
-  const Feature other = otherFeature(*contact);
-  contact->id = is_a_ ? contactId(own, other) : contactId(other, own);
+void RoundSide::rename(const Feature& own, const Feature& other, Contact* contact) const {
+  const Feature named = is_named_by_place_ ? own : ownFeature(*contact);
+  contact->id = is_a_ ? contactId(named, other) : contactId(other, named);
 }
 
 void RoundSide::move(Contact* contact) const {
@@ -88,7 +81,7 @@ void RoundSide::move(Contact* contact) const {
     const int own_rim = rimOf(*own_.collider.geometry, own), other_rim = rimOf(*other_.collider.geometry, other);
     const bool asks = (own_rim < 0) == (other_rim < 0) ? is_a_ : own_rim >= 0;  // once for both: the side with a rim, else A
     if (asks) atCylinder(own_rim, contact);
-    rename(own_rim < 0 ? Feature{FeatureKind::FACE, 0} : rim(own_rim == 1), contact);
+    rename(own_rim < 0 ? Feature{FeatureKind::FACE, 0} : rim(own_rim == 1), other, contact);
   } else if (other.kind == FeatureKind::FACE || other.kind == FeatureKind::HALF_SPACE) {
     if (isRim(cylinder_, own)) overPlane(own.index, contact);
   } else {
@@ -105,6 +98,7 @@ void RoundSide::overPlane(int vertex, Contact* contact) const {
   const int nearest_line = static_cast<int>(std::lround(lowest / step) + sides) % sides, line = vertex / 2;
   const int from_lowest = (line - nearest_line + sides) % sides;
   if (from_lowest == 0) {
+    if (lean >= ROLLS && otherFeature(*contact).kind == FeatureKind::FACE && toWhatItMeets(vertex, towards, contact)) return;
     const double angle = step * line;
     const Vector3 way = cylinder_.radius * Vector3(std::cos(lowest) - std::cos(angle), std::sin(lowest) - std::sin(angle), 0);
     const double lower = way.dot(towards);
@@ -114,7 +108,23 @@ void RoundSide::overPlane(int vertex, Contact* contact) const {
     contact->depth -= lean < ROLLS_ALONE ? cylinder_.radius * std::max(0.0, lean - ROLLS) : std::numeric_limits<double>::infinity();
   }
   if (lean < ROLLS) return;
-  rename(from_lowest == 0 ? rim(vertex % 2 == 1) : Feature{FeatureKind::VERTEX, 2 * from_lowest + vertex % 2}, contact);
+  rename(from_lowest == 0 ? rim(vertex % 2 == 1) : Feature{FeatureKind::VERTEX, 2 * from_lowest + vertex % 2}, otherFeature(*contact),
+         contact);
+}
+
+/**
+ * Moves a contact of a rim's vertex that is nearest to its lowest point, which may be beyond the face, or over it where the vertex is not.
+ * @param towards unit, to the face, in the cylinder's frame @return false where the vertex tells what the rim meets
+ */
+bool RoundSide::toWhatItMeets(int vertex, const Vector3& towards, Contact* contact) const {
+  const Pose X_KW = X_WK_.inverse();
+  const Vector3 own = cylinder_.X_GK.inverse() * own_.collider.geometry->mesh().vertices[vertex];
+  const bool fades = (X_KW * witnessOf(*contact, own_.collider.radius, is_a_) - own).norm() > ON_MESH;
+  const Feature face = otherFeature(*contact);
+  NearestPlace place{face, own, X_KW * witnessOf(*contact, other_.collider.radius, !is_a_)};
+  if (!descent().descendFrom(-towards, &place)) return false;
+  const bool is_over_face = place.feature.kind == face.kind && place.feature.index == face.index;
+  return (fades || !is_over_face) && set(place, contact);
 }
 
 /** Whether a point of the cylinder's frame lies on the mesh's mantle. */
@@ -124,34 +134,13 @@ bool RoundSide::isOnMesh(const Vector3& p) const {
   return std::abs(p.z()) <= cylinder_.half_length + ON_MESH && std::abs(std::hypot(p.x(), p.y()) - mantle) <= ON_MESH;
 }
 
-/** Nearest points of the cylinder and of the other's vertex or edge, from near ones on. @return false if none is on mantle or rim */
-bool RoundSide::nearestPair(const Feature& other, Vector3* x, Vector3* q) const {
-  if (other.kind == FeatureKind::VERTEX) return project(cylinder_, *q, x);
-  const CollisionGeometry& geometry = *other_.collider.geometry;
-  const auto ends = geometry.topology().ends(geometry.mesh(), other.index);
-  const Vector3 start = X_KO_ * geometry.mesh().vertices[ends[0]], along = X_KO_ * geometry.mesh().vertices[ends[1]] - start;
-  const double across2 = along.head<2>().squaredNorm(), length2 = along.squaredNorm();
-  const auto pointAt = [&](double part) -> Vector3 { return start + std::clamp(part, 0.0, 1.0) * along; };
-  if (across2 > MIN_EDGE_SINE * MIN_EDGE_SINE * length2) {
-    const Vector3 beside_axis = pointAt(-start.head<2>().dot(along.head<2>()) / across2);
-    if (std::abs(beside_axis.z()) <= cylinder_.half_length) {
-      *q = beside_axis;
-      return project(cylinder_, *q, x);
-    }
-  }
-  constexpr int TIMES = 4;
-  for (int i = 0; i < TIMES; ++i) {
-    if (!project(cylinder_, *q, x)) return false;
-    *q = pointAt((*x - start).dot(along) / length2);
-  }
-  return project(cylinder_, *q, x);
-}
-
 void RoundSide::atPoint(Contact* contact) const {
   const Pose X_KW = X_WK_.inverse();
   if (!isOnMesh(X_KW * witnessOf(*contact, own_.collider.radius, is_a_))) return;
-  Vector3 x, q = X_KW * witnessOf(*contact, other_.collider.radius, !is_a_);
-  if (nearestPair(otherFeature(*contact), &x, &q)) set(x, q, contact);
+  NearestPlace place{otherFeature(*contact), Vector3::Zero(), X_KW * witnessOf(*contact, other_.collider.radius, !is_a_)};
+  if (!descent().approach(&place)) return;
+  NearestPlace end = place;
+  set(descent().descend(&end) ? end : place, contact);
 }
 
 /**
@@ -179,19 +168,21 @@ void RoundSide::atCylinder(int own_rim, Contact* contact) const {
     x = towards(near, std::clamp(near.z(), -cylinder_.half_length, cylinder_.half_length));
   }
   Vector3 q;
-  if (x.allFinite() && project(other, X_KL.inverse() * x, &q)) set(x, X_KL * q, contact);
+  if (x.allFinite() && projectOnto(other, X_KL.inverse() * x, &q)) set({otherFeature(*contact), x, X_KL * q}, contact);
 }
 
-/** Sets the contact to that of two points, in the cylinder's frame, unless they are farther apart than those of the mesh. */
-void RoundSide::set(const Vector3& x, const Vector3& q, Contact* contact) const {
+/** Sets the contact to that of two points. @return false, and does nothing, if they are farther apart than those of the mesh */
+bool RoundSide::set(const NearestPlace& place, Contact* contact) const {
+  const Vector3 &x = place.on_cylinder, &q = place.on_surface;
   const double own_radius = own_.collider.radius, layer = own_radius + other_.collider.radius, gap = (x - q).norm();
-  if (gap <= TOUCH || gap > layer - contact->depth + ON_MESH) return;
+  if (gap <= TOUCH || gap > layer - contact->depth + ON_MESH) return false;
   const Vector3 normal = (x - q) / gap;  // from the other to the cylinder
   contact->normal_BA = X_WK_.linear() * (is_a_ ? normal : Vector3(-normal));
   contact->depth = layer - gap;
   contact->point = X_WK_ * Vector3(x - (own_radius - 0.5 * contact->depth) * normal);
   const bool is_at_rim = std::abs(x.z()) >= cylinder_.half_length;
-  rename(is_at_rim ? rim(x.z() > 0) : Feature{FeatureKind::FACE, 0}, contact);
+  rename(is_at_rim ? rim(x.z() > 0) : Feature{FeatureKind::FACE, 0}, place.feature, contact);
+  return true;
 }
 
 /** The deepest contact of each name stays: several sides of a mesh may have had it. */

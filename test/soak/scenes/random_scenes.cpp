@@ -12,6 +12,7 @@
 #include <map>
 
 #include "support/random/eventful_scene.h"
+#include "support/random/round_scene.h"
 
 namespace blem_sim {
 namespace {
@@ -21,6 +22,7 @@ struct Options {
   int jobs = 1;
   double duration = 1, patience = 60;  // [s] simulated; of processor time per scene
   bool verbose = false;
+  bool round = false;     ///< scenes of things that roll
   bool eventful = false;  ///< models come and go, things are moved, states come back
   bool live = false;      ///< and live surfaces are exchanged
 };
@@ -52,10 +54,11 @@ void tellHowFar(int) {
   signal(SIGXCPU, tellHowFar);
   setrlimit(RLIMIT_CPU, &limit);
   try {
+    const RandomScene scene = sceneOf(seed, options.round);
     if (options.eventful)
-      EventfulScene(seed, options.live, &running).run(options.duration);
+      EventfulScene(scene, seed, options.live, &running).run(options.duration);
     else
-      runRandomScene(seed, options.duration, &running);
+      runRandomScene(scene, options.duration, &running);
   } catch (const std::exception& error) {
     running.fail("refused", error.what());
   }
@@ -141,14 +144,14 @@ class Summary {
 
 void tell(const SceneOutcome& outcome, const Options& options) {
   if (!outcome.failed() && !options.verbose) return;
-  const RandomScene scene = randomScene(outcome.seed);
+  const RandomScene scene = sceneOf(outcome.seed, options.round);
   std::printf("seed %-6llu %-18s %s | %s | gained %.3g J (x %.2g), worst step %.1f ms", static_cast<unsigned long long>(outcome.seed),
               outcome.failed() ? outcome.failure : "ok", outcome.details, scene.description.c_str(), outcome.gained, outcome.of_energy,
               1e3 * outcome.worst_step);
   for (int bit = 0; bit < STATUS_BITS; ++bit)
     if (outcome.bits[bit] > 0) std::printf(" %s:%d", sim::STEP_STATUS[bit].name, outcome.bits[bit]);
   if (outcome.failed())
-    std::printf(" | scripts/validate_random_scenes%s --seed %llu",
+    std::printf(" | scripts/validate_random_scenes%s%s --seed %llu", options.round ? " --round" : "",
                 options.live       ? " --live"
                 : options.eventful ? " --eventful"
                                    : "",
@@ -199,6 +202,8 @@ int main(int count, char** words) {
       options.patience = std::atof(value());
     else if (word == "--verbose")
       options.verbose = true;
+    else if (word == "--round")
+      options.round = true;
     else if (word == "--eventful" || word == "--live") {
       options.eventful = true;
       options.live = word == "--live";

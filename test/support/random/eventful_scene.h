@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "blem_sim/sim/simulator_input.h"
 #include "support/random/random_events.h"
@@ -39,12 +40,12 @@ class Twin : public sim::SimulatorWatcher {
 
 class EventfulScene {
  public:
-  /** @param live there are live surfaces as well, and a twin @param outcome told step by step */
-  EventfulScene(std::uint64_t seed, bool live, SceneOutcome* outcome)
-      : scene_(randomScene(seed)),
-        surfaces_(seed + 500009, sizeOf(seed)),
+  /** @param scene of that seed @param live there are live surfaces as well, and a twin @param outcome told step by step */
+  EventfulScene(RandomScene scene, std::uint64_t seed, bool live, SceneOutcome* outcome)
+      : scene_(std::move(scene)),
+        surfaces_(seed + 500009, scene_.size),
         simulator_(configOf(live), model::UriResolver()),
-        events_(seed + 1000003, sizeOf(seed)),
+        events_(seed + 1000003, scene_.size),
         when_(seed + 77),
         outcome_(*outcome) {
     outcome_.seed = seed;
@@ -63,11 +64,6 @@ class EventfulScene {
   }
 
  private:
-  static double sizeOf(std::uint64_t seed) {
-    SceneNumbers numbers(seed);
-    return randomTraits(&numbers).size;
-  }
-
   const sim::SimulationConfig& configOf(bool live) {
     if (live) surfaces_.addTo(&scene_.config);
     return scene_.config;
@@ -84,6 +80,7 @@ class EventfulScene {
     last_ = event.name;
     watch_.reset();
     scene_.floor = -INFINITY;
+    scene_.watches_walls = false;
     scene_.passive = scene_.passive && event.passive;
   }
 

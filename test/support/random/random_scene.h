@@ -19,6 +19,8 @@ struct RandomScene {
   std::vector<sim::JointCommandMessage> commands;  ///< one per robot, given once at the start
   bool passive = true;                             ///< no motor and no compliant contact: energy may only fall
   double floor = -INFINITY;                        ///< [m] height that no centre of an object may pass downwards
+  double size = 0;                                 ///< [m] of a body, typically
+  bool watches_walls = false;                      ///< no centre may go through a mesh of the environment
   std::string description;                         ///< one line
 };
 
@@ -119,6 +121,20 @@ inline void addBodies(SceneNumbers* n, const SceneTraits& traits, int count, con
                                     traits.throws > 0 ? ", thrown" : "", traits.spins > 0 ? ", spinning" : "");
 }
 
+/** Four boards around the origin. @param inner [m] between opposite ones */
+inline void addWalls(double inner, RandomScene* scene) {
+  const double wall = 0.2 * inner;
+  for (int side = 0; side < 4; ++side) {
+    sim::EnvironmentConfig board;
+    board.name = fmt::format("wall{}", side);
+    board.uri = sim::meshFile("unit_cube", geometry::boxMesh(Vector3::Ones()));
+    board.scale = side < 2 ? Vector3(wall, inner + 2 * wall, inner) : Vector3(inner + 2 * wall, wall, inner);
+    const double at = (side % 2 == 0 ? 0.5 : -0.5) * (inner + wall);
+    board.X_WE = makePose({side < 2 ? at : 0, side < 2 ? 0 : at, 0.45 * inner});
+    scene->config.environments.push_back(board);
+  }
+}
+
 /** Static: a large sheet, a half-space, a tray, or nothing. */
 inline void addGround(SceneNumbers* n, const SceneTraits& traits, RandomScene* scene) {
   const int kind = n->count(0, 9);
@@ -138,16 +154,7 @@ inline void addGround(SceneNumbers* n, const SceneTraits& traits, RandomScene* s
   scene->config.environments.push_back(sim::ground(1000));
   scene->description += kind >= 8 ? "tray" : "sheet";
   if (kind < 8) return;
-  const double inner = traits.size * (traits.columns + 1) * traits.pitch * std::sqrt(traits.size_spread), wall = 0.2 * inner;
-  for (int side = 0; side < 4; ++side) {
-    sim::EnvironmentConfig board;
-    board.name = fmt::format("wall{}", side);
-    board.uri = sim::meshFile("unit_cube", geometry::boxMesh(Vector3::Ones()));
-    board.scale = side < 2 ? Vector3(wall, inner + 2 * wall, inner) : Vector3(inner + 2 * wall, wall, inner);
-    const double at = (side % 2 == 0 ? 0.5 : -0.5) * (inner + wall);
-    board.X_WE = makePose({side < 2 ? at : 0, side < 2 ? 0 : at, 0.45 * inner});
-    scene->config.environments.push_back(board);
-  }
+  addWalls(traits.size * (traits.columns + 1) * traits.pitch * std::sqrt(traits.size_spread), scene);
 }
 
 /** Gravity, surfaces and the step. */
@@ -182,6 +189,7 @@ inline RandomScene randomScene(std::uint64_t seed) {
   SceneNumbers n(seed);
   RandomScene scene;
   const SceneTraits traits = randomTraits(&n);
+  scene.size = traits.size;
   addGround(&n, traits, &scene);
   setConditions(&n, &scene);
   const int robots = n.chance(0.4) ? n.count(1, 2) : 0;

@@ -7,8 +7,10 @@
 #include <array>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "soak/figures.h"
+#include "support/bare_meshes.h"
 #include "support/random/random_scene.h"
 
 namespace blem_sim {
@@ -42,6 +44,7 @@ class SceneWatch {
     start_ = simulator.report().energy + lag(simulator.report());
     gained_before_ = outcome->gained;
     for (const dynamics::BodyState& body : simulator.report().bodies) above_.push_back(body.X_WB.translation().z() > scene.floor);
+    if (scene.watches_walls) findWalls();
   }
 
   void look(const sim::StepReport& report, double seconds) {
@@ -53,6 +56,7 @@ class SceneWatch {
     if (report.status & sim::STATE_NOT_FINITE) outcome_.fail("not finite", fmt::format("at {:.3f} s", report.time));
     lookAtEnergy(report);
     lookAtFloor(report);
+    lookAtWalls(report);
   }
   /** [J] largest kinetic energy, or change of energy, since the start. */
   double scale() const { return scale_; }
@@ -89,19 +93,35 @@ class SceneWatch {
     }
   }
 
+  void findWalls() {
+    const std::vector<contact::Collider>& colliders = simulator_.colliders();
+    for (std::size_t wall = 0; wall < colliders.size(); ++wall) {
+      if (!colliders[wall].enabled || colliders[wall].body != dynamics::WORLD_BODY || colliders[wall].geometry->isHalfSpace()) continue;
+      for (std::size_t i = 0; i < colliders.size(); ++i)
+        if (colliders[i].enabled && colliders[i].body != dynamics::WORLD_BODY)
+          paths_.emplace_back(static_cast<int>(i), static_cast<int>(wall));
+    }
+  }
+  void lookAtWalls(const sim::StepReport& report) {
+    for (CentrePath& path : paths_) {
+      if (!path.goesThrough(simulator_) || (told_ & (sim::CONTACT_UNRELIABLE | sim::STATE_NOT_FINITE))) continue;
+      const contact::Collider& thrown = simulator_.colliders()[path.thrown()];
+      outcome_.fail("through a wall", fmt::format("{} at {:.3f} s", simulator_.models()[thrown.model].name, report.time));
+    }
+  }
+
   const RandomScene& scene_;
   const sim::Simulator& simulator_;
   SceneOutcome& outcome_;
   std::vector<bool> above_;
+  std::vector<CentrePath> paths_;
   std::uint32_t told_ = 0;
   double start_ = 0, scale_ = 0, lag_ = 0, gained_before_ = 0;
 };
 
 /** @param duration [s] simulated @param out told step by step */
-inline void runRandomScene(std::uint64_t seed, double duration, SceneOutcome* out) {
+inline void runRandomScene(const RandomScene& scene, double duration, SceneOutcome* out) {
   SceneOutcome& outcome = *out;
-  outcome.seed = seed;
-  const RandomScene scene = randomScene(seed);
   sim::Simulator simulator(scene.config, model::UriResolver());
   commandRobots(scene, &simulator);
   SceneWatch watch(scene, simulator, &outcome);
