@@ -171,6 +171,26 @@ TEST(OnCylinders, RimsMeetTheBorderOfASheetWhereTheyLeaveIt) {
     }
 }
 
+/** A wheel that rolls over the edge of a kerb, level and square to it. */
+TEST(OnCylinders, BothRimsMeetAnEdgeAlike) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI), beside(-0.003, 0.002);
+  const Collider kerb = makeCollider(geometry::boxMesh({1, 1, 1}), 0), round = wheel();
+  const Pose X_WKerb = makePose({-0.5, 0, -0.5});  // its upper edge is the y axis
+  for (int i = 0; i < 300; ++i) {
+    Pose X = rolled(WHEEL + 1e-3, 0, angle(random), 0);
+    X.translation().x() = beside(random);
+    const ContactManifold manifold = contactsOf(round, X, kerb, X_WKerb);
+    double deepest[2] = {-1, -1};
+    for (const Contact& contact : manifold.contacts) {
+      double& of_rim = deepest[(X.inverse() * contact.point).z() > 0];
+      of_rim = std::max(of_rim, contact.depth);
+    }
+    const double distance = std::hypot(std::max(0.0, X.translation().x()), X.translation().z()) - WHEEL;
+    for (const double depth : deepest) EXPECT_NEAR(depth, WHEEL_LAYER - distance, 1e-9) << i;
+  }
+}
+
 /** Parallel wheels, one of them shifted along its axis, and crossed ones. */
 TEST(OnCylinders, CylindersMeetCylinders) {
   std::mt19937 random(4);

@@ -113,6 +113,30 @@ TEST(RollingCylinders, ALogRollsOverAGapBetweenBoxes) {
   EXPECT_NEAR(bodyOf(simulator, "log").X_WB.translation().z(), 0.1, 1e-5);
 }
 
+TEST(RollingCylinders, ACanRollsDownStepsStraightAndGainsNothing) {
+  const SolidCylinder can{0.04, 0.1, 0.4};
+  for (const double restitution : {0.0, 0.5}) {
+    SimulationConfig config = roundConfig(0.6, LAYER_OF_LOG);
+    config.contact.surface.restitution = restitution;
+    for (int i = 0; i < 5; ++i)
+      config.environments.push_back(block(fmt::format("step{}", i), {i == 0 ? 1.0 : 0.3, 1, 2}, {i == 0 ? -0.35 : 0.3 * i, 0, -0.1 * i}));
+    config.objects = {cylinderAlongY("can", can, {-0.1, 0, 0.041})};
+    roll(0.3, 0.041, &config.objects[0]);
+    Simulator simulator(config, model::UriResolver());
+    const double start = simulator.report().energy;
+    double gained = 0;
+    for (int i = 0; i < 2500; ++i) {
+      const StepReport& report = simulator.step();
+      gained += report.energy_gained;
+      ASSERT_LT(report.energy - start - gained, 1e-6) << restitution << " " << i;
+    }
+    EXPECT_LT(gained, 1e-4) << restitution;
+    const Vector3 end = bodyOf(simulator, "can").X_WB.translation();
+    EXPECT_LT(end.z(), -0.05) << restitution;
+    EXPECT_NEAR(end.y(), 0, 1e-5) << restitution;
+  }
+}
+
 /** The middle goes half as fast as the plate on top. */
 TEST(RollingCylinders, APlateOnRollersRollsDownASlope) {
   for (const double time_step : {1e-3, 5e-3}) {

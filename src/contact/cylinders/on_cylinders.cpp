@@ -180,8 +180,7 @@ bool RoundSide::set(const NearestPlace& place, Contact* contact) const {
   contact->normal_BA = X_WK_.linear() * (is_a_ ? normal : Vector3(-normal));
   contact->depth = layer - gap;
   contact->point = X_WK_ * Vector3(x - (own_radius - 0.5 * contact->depth) * normal);
-  const bool is_at_rim = std::abs(x.z()) >= cylinder_.half_length;
-  rename(is_at_rim ? rim(x.z() > 0) : Feature{FeatureKind::FACE, 0}, place.feature, contact);
+  rename(isAtRim(cylinder_, x) ? rim(x.z() > 0) : Feature{FeatureKind::FACE, 0}, place.feature, contact);
   return true;
 }
 

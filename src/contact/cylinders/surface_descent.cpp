@@ -13,7 +13,7 @@ namespace {
 
 constexpr int MOST_FEATURES = 8, MOST_TRIANGLES = 200;  // on a way
 constexpr int MOST_HALVINGS = 60;
-constexpr double SAME_PART = 1e-15, FLAT_SLOPE = 1e-12;  // parts of an edge
+constexpr double SAME_PART = 1e-15;  // of an edge
 
 }  // namespace
 
@@ -22,6 +22,11 @@ bool projectOnto(const geometry::Cylinder& cylinder, const Vector3& q, Vector3* 
   if (from_axis <= cylinder.radius) return false;
   *x = {cylinder.radius / from_axis * q.x(), cylinder.radius / from_axis * q.y(), z};
   return true;
+}
+
+bool isAtRim(const geometry::Cylinder& cylinder, const Vector3& x) {
+  constexpr double SAME = 1e-7;  // [m]
+  return std::abs(x.z()) >= cylinder.half_length - SAME;
 }
 
 bool SurfaceDescent::approach(NearestPlace* place) const {
@@ -33,21 +38,25 @@ bool SurfaceDescent::approach(NearestPlace* place) const {
   return projectOnto(cylinder_, q, &place->on_cylinder);
 }
 
-/** Sets q to the edge's point that is nearest to the solid cylinder; of several, one near q. */
+/** Sets q to the edge's point that is nearest to the solid cylinder; of an edge that is nearly parallel to the axis, whose contacts at both
+ * rims stay, to one near q. */
 void SurfaceDescent::approachEdge(int edge, Vector3* q) const {
   const auto ends = surface_.topology().ends(surface_.mesh(), edge);
   const Vector3 start = vertex(ends[0]), along = vertex(ends[1]) - start;
   const double across2 = along.head<2>().squaredNorm(), length2 = along.squaredNorm();
   const auto pointAt = [&](double part) -> Vector3 { return start + std::clamp(part, 0.0, 1.0) * along; };
   if (across2 > MIN_EDGE_SINE * MIN_EDGE_SINE * length2) {
-    *q = pointAt(-start.head<2>().dot(along.head<2>()) / across2);
-    if (std::abs(q->z()) <= cylinder_.half_length) return;
+    const Vector3 beside_axis = pointAt(-start.head<2>().dot(along.head<2>()) / across2);
+    if (std::abs(beside_axis.z()) <= cylinder_.half_length) {
+      *q = beside_axis;
+      return;
+    }
   }
+  if (across2 < EDGE_CONE_SLACK * EDGE_CONE_SLACK * length2) return stayNear(start, along, q);
   const auto leadsAway = [&](double part) { return along.dot(beyond(pointAt(part))); };  // half the squared distance's slope: it grows
-  double lower = std::clamp((*q - start).dot(along) / length2, 0.0, 1.0), at_lower = leadsAway(lower);
-  double upper = at_lower > 0 ? 0 : 1, at_upper = leadsAway(upper);
-  if (at_lower * at_upper >= 0) {
-    *q = pointAt(std::abs(at_lower) <= FLAT_SLOPE * length2 ? lower : upper);
+  double lower = 0, at_lower = leadsAway(0), upper = 1, at_upper = leadsAway(1);
+  if (at_lower >= 0 || at_upper <= 0) {
+    *q = pointAt(at_lower >= 0 ? 0 : 1);
     return;
   }
   double part = lower;
@@ -65,6 +74,16 @@ void SurfaceDescent::approachEdge(int edge, Vector3* q) const {
     if (at_part == 0) break;
   }
   *q = pointAt(part);
+}
+
+/** Sets q, from that at hand on, to a point of an edge that is nearly parallel to the axis. */
+void SurfaceDescent::stayNear(const Vector3& start, const Vector3& along, Vector3* q) const {
+  constexpr int TIMES = 4;
+  for (int i = 0; i < TIMES; ++i) {
+    Vector3 x;
+    if (!projectOnto(cylinder_, *q, &x)) return;
+    *q = start + std::clamp((x - start).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
+  }
 }
 
 /** From the nearest point of the solid cylinder to q. */
@@ -139,8 +158,7 @@ SurfaceDescent::OverFace SurfaceDescent::overFace(const Vector3& towards, Neares
   const Vector3 up = normal.dot(towards) < 0 ? Vector3(-normal) : normal;
   const double lean = std::hypot(up.x(), up.y());
   if (lean < rolls_) return OverFace::NOT_ROLLING;
-  const bool is_at_rim = std::abs(place->on_cylinder.z()) >= cylinder_.half_length;
-  const double z = std::copysign(cylinder_.half_length, is_at_rim ? place->on_cylinder.z() : -up.z());
+  const double z = std::copysign(cylinder_.half_length, isAtRim(cylinder_, place->on_cylinder) ? place->on_cylinder.z() : -up.z());
   const Vector3 lowest(-cylinder_.radius / lean * up.x(), -cylinder_.radius / lean * up.y(), z);
   const Vector3 foot = lowest - up.dot(lowest - vertex(surface_.mesh().elements[place->triangle][0])) * up;
   const int edge = leftOver(place->on_surface, foot, &place->triangle);

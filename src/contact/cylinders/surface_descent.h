@@ -17,6 +17,9 @@ struct NearestPlace {
 /** Nearest point of mantle or rim to q, in the cylinder's frame. @return false if it is on a flat end, or q is inside */
 bool projectOnto(const geometry::Cylinder& cylinder, const Vector3& q, Vector3* x);
 
+/** Whether a point of mantle or rim lies on a rim. */
+bool isAtRim(const geometry::Cylinder& cylinder, const Vector3& x);
+
 /**
  * Walks from feature to feature of a surface as a cylinder's distance leads it: where the way between nearest points leads into a face
  * beside their edge, to the rim's lowest point over that face; where that point lies beyond the face's plane, to the edge between. So what
@@ -42,6 +45,7 @@ class SurfaceDescent {
   Vector3 vertex(int index) const { return X_KO_ * surface_.mesh().vertices[index]; }
   Vector3 into(int edge, int face) const { return X_KO_.linear() * surface_.topology().inward(surface_.mesh(), edge, face); }
   void approachEdge(int edge, Vector3* q) const;
+  void stayNear(const Vector3& start, const Vector3& along, Vector3* q) const;
   Vector3 beyond(const Vector3& q) const;
   bool findNext(const Vector3& towards, NearestPlace* place) const;
   bool findEdgeAt(int vertex, const Vector3& towards, NearestPlace* place) const;
