@@ -70,7 +70,9 @@ NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
 }
 
 void IslandSolver::recoverFromFaults(const NewtonSettings& settings, NewtonReport* report) {
-  if (faults(*report, found_.terms.contacts) > 1) last_resort_.recover(*island_, {&swept_, &newton_, &steps_}, settings, report);
+  const std::vector<ContactTerm>& contacts = found_.terms.contacts;
+  const double most = island_->model.isHeap() ? faults(*report, contacts) : faultsWithCreep(*report, contacts);
+  if (most > 1) last_resort_.recover(*island_, {&swept_, &newton_, &steps_}, settings, report);
 }
 
 bool IslandSolver::limitCorrections(double speed) {

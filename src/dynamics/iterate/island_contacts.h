@@ -29,6 +29,8 @@ class IslandContacts {
   PotentialSlope respond(double a);
   /** The present iterate becomes the proximal point, its slips mixed with those of the last ones. */
   void remember() { slip_mixing_.remember(begin(), end()); }
+  /** SlipMixing::damp */
+  void dampSlips(double share) { slip_mixing_.damp(share); }
   /** Slips are mixed anew from here on. */
   void forgetSlips() { slip_mixing_.start(blocks_.size() * LANES); }
   /** Impulses of the terms become those of the iterate, and the proximal point. */

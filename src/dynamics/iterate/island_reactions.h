@@ -18,6 +18,8 @@ class IslandReactions {
   void soften(double contact, double joint);
   /** Impulses at hand become the proximal points of contacts, joints and loops. */
   void remember();
+  /** SlipMixing::damp */
+  void dampSlips(double share) { contacts_.dampSlips(share); }
   /** Slips of contacts are mixed anew from here on. */
   void forgetSlips() { contacts_.forgetSlips(); }
   /** Responses as if contacts, friction and limits went on as they were when the last step ended, linear though they are not. */

@@ -76,7 +76,17 @@ void SlipMixing::mix(ContactBlock* begin, ContactBlock* end) {
     for (int lane = 0; lane < LANES; ++lane, ++i) b->slip[lane] = std::max(0.0, b->slip[lane] + part * shift_[i]);
 }
 
+void SlipMixing::goPartOfTheWay(ContactBlock* begin, ContactBlock* end) {
+  now_.found.clear();
+  for (const ContactBlock* b = begin; b != end; ++b) now_.found.insert(now_.found.end(), b->slip, b->slip + LANES);
+  blem_sim::dynamics::remember(begin, end);
+  std::size_t i = 0;
+  for (ContactBlock* b = begin; b != end; ++b)
+    for (int lane = 0; lane < LANES; ++lane, ++i) b->slip[lane] = now_.found[i] + share_ * (b->slip[lane] - now_.found[i]);
+}
+
 void SlipMixing::remember(ContactBlock* begin, ContactBlock* end) {
+  if (share_ < 1) return goPartOfTheWay(begin, end);
   findSlips(begin, end);
   if (steps_ > 0 && !(innerProduct(now_.miss, now_.miss) < innerProduct(last_.miss, last_.miss))) steps_ = 0;
   if (steps_ > 0) mix(begin, end);

@@ -37,6 +37,8 @@ class NewtonLoop {
   void remember() { iterate_.reactions().remember(); }
   /** The same, its slips as they are. */
   void rememberUnmixed();
+  /** SlipMixing::damp */
+  void dampSlips(double share) { iterate_.reactions().dampSlips(share); }
   /** Slips are mixed anew from here on. */
   void forgetSlips() { iterate_.reactions().forgetSlips(); }
 
