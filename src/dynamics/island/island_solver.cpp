@@ -31,7 +31,7 @@ NewtonReport IslandSolver::solve(const Forest& forest, const ForestMotion& motio
     steps_.finish(settings, &report);
     return report;
   }
-  report = isSwept() ? heap_.solve(settings) : steps_.solvePredicted(settings);
+  report = island_->model.isSwept() ? heap_.solve(settings) : steps_.solvePredicted(settings);
   recoverFromFaults(settings, &report);
   return report;
 }
@@ -64,14 +64,14 @@ NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
   if (fliesAlone()) return fly();
   setKinetic(*island_);
   keepFirst(*island_);
-  NewtonReport report = isSwept() ? heap_.solve(settings) : steps_.solve(settings);
+  NewtonReport report = island_->model.isSwept() ? heap_.solve(settings) : steps_.solve(settings);
   recoverFromFaults(settings, &report);
   return report;
 }
 
 void IslandSolver::recoverFromFaults(const NewtonSettings& settings, NewtonReport* report) {
   const std::vector<ContactTerm>& contacts = found_.terms.contacts;
-  const double most = island_->model.isHeap() ? faults(*report, contacts) : faultsWithCreep(*report, contacts);
+  const double most = island_->model.isSwept() ? faults(*report, contacts) : faultsWithCreep(*report, contacts);
   if (most > 1) last_resort_.recover(*island_, {&swept_, &newton_, &steps_}, settings, report);
 }
 

@@ -41,7 +41,6 @@ class IslandSolver {
  private:
   bool fliesAlone() const;
   NewtonReport fly();
-  bool isSwept() const { return island_->model.isHeap() || island_->model.isMixedHeap(); }
   void forgetReactions();
   void recoverFromFaults(const NewtonSettings& settings, NewtonReport* report);
 

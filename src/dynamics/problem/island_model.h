@@ -45,6 +45,7 @@ struct IslandModel {
   bool isHeap() const;
   /** Whether robots are among so many bodies that it is swept while these tumble. */
   bool isMixedHeap() const;
+  bool isSwept() const { return isHeap() || isMixedHeap(); }
   /** Whether its Hessian takes long to factor: as long as dozens of sweeps. */
   bool isCrowd() const;
   /** [N s] A push that no load needs: it would make the whole island ten times as fast as depth is corrected. @param speed [m/s] of that */
