@@ -5,14 +5,12 @@ import pytest
 from motion_case import ROOT, off
 
 sys.path.insert(0, str(ROOT / "test" / "support"))
-from scene_runs import world  # noqa: E402
+from hubo_scenes import bent_hubo  # noqa: E402
 from shared_data import package_options, shared_data  # noqa: E402
 
 pytestmark = pytest.mark.skipif(shared_data("robots") is None, reason="shared data not found (set BLEM_SIM_SHARED_DATA to its folder)")
 
 SOLE = [(-0.145, 0.05), (-0.12, 0.075), (0.007, 0.077), (0.0665, 0.0325), (0.0665, -0.0325), (0.0214, -0.067), (-0.12, -0.067), (-0.145, -0.045)]
-BENT = {"LSP": 0.2, "LSR": 0.15, "RSP": 0.2, "RSR": -0.15, "LEP": -0.6, "REP": -0.6,
-        "LHP": -0.3, "LKP": 0.6, "LAP": -0.3, "RHP": -0.3, "RKP": 0.6, "RAP": -0.3}  # [rad]
 MOTION = {
     "margin": 0.025, "friction": 0.6, "rate": 20, "body": "Body_Torso5",
     "contacts": {name: {"link": link, "points": [[x, side * y, -0.1054] for x, y in SOLE]}
@@ -28,12 +26,8 @@ SQUAT = [REST, {"name": "down", "duration": 3, "body": {"rise": -0.15}}, {"name"
 
 
 def hubo_on_plane():
-    """With computed gains: the data's own let a hip that carries the robot sag by 3 degrees."""
-    config = world("hubo_plane", sensors=False)
+    config = bent_hubo("hubo_plane")
     config["environments"][0]["friction"] = 0.8
-    robot = config["robots"][0]
-    robot.pop("gains")
-    robot.update(motors="computed", joint_friction={}, initial_positions={"Body_%s_joint" % name: angle for name, angle in BENT.items()})
     return config
 
 

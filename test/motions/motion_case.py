@@ -4,7 +4,6 @@ import copy
 import csv
 import io
 import json
-import math
 import os
 import pathlib
 import subprocess
@@ -14,7 +13,8 @@ import pytest
 import yaml
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("motions", "sweep", "support")]
+sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("motions", "sweep", "support")] + [str(ROOT / "test" / "support")]
+from hubo_scenes import off  # noqa: E402,F401
 from planning.command import main  # noqa: E402
 
 MOTIONS = ROOT / "config" / "motions"
@@ -75,9 +75,3 @@ def changed(motion, **keys):
     """A copy of a motion with other keys; None leaves one out."""
     said = dict(copy.deepcopy(motion), **keys)
     return {key: value for key, value in said.items() if value is not None}
-
-
-def off(body, planned):
-    """Distance [m] and turn [rad] between a body of a run's report and a planned pose."""
-    dot = abs(sum(a * b for a, b in zip(body["quat_xyzw"], planned["quat_xyzw"])))
-    return math.dist(body["xyz"], planned["xyz"]), 2 * math.acos(min(1.0, dot))

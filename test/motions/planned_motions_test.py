@@ -1,4 +1,5 @@
 """Motions that scripts/plan_motion plans: within their limits, and in the simulator the robot does not fall and ends where it was planned to."""
+import math
 import xml.etree.ElementTree as ElementTree
 
 import pytest
@@ -84,6 +85,31 @@ def test_hands_on_a_wall_hold_what_feet_alone_do_not(case):
     assert distance < 0.005 and turn < 0.01
     without = case.play(WORLD, until)
     assert off(without["bodies"]["humanoid::pelvis"], leaning["end"]["root"])[1] > 0.5, "it falls where there is no wall"
+
+
+def test_a_foot_turns_about_its_toes(case):
+    """Where the rear leg is too short for a flat foot the heel rises; the toes' ends stay."""
+    toes = {"link": "left_foot", "points": [[0.14, -0.055, -0.06], [0.14, 0.055, -0.06]], "facing": [0, 0, 1], "keeps": "edge"}
+    phases = [STEPS["phases"][0], {"name": "far", "duration": 2, "move": {"right": {"by": [0.25, 0, 0], "lift": 0.04}}},
+              {"name": "heel up", "duration": 3, "release": ["left"], "com": {"over": ["right"]}, "body": {"rise": 0.03}}]
+    feet = {name: {"xyz": [0.5, y, 0.0025], "rpy": [0, 0, 0]} for name, y in (("left", 0.12), ("right", -0.12))}
+    plan = case.plan(WORLD, changed(STEPS, rate=25, contacts=dict(STEPS["contacts"], left_toes=toes), holding=["left", "left_toes", "right"], phases=phases,
+                                    start={"contacts": feet, "com": {"over": ["left", "right"]}, "height": 0.57, "rpy": [0, 0, 0]}))
+    flat, turned = plan["start"]["links"]["left_toes"], plan["phases"][-1]["end"]["links"]["left_toes"]
+    assert 2 * math.asin(math.hypot(*turned["quat_xyzw"][:3])) > 0.2, "the heel rises"
+    for point in toes["points"]:
+        assert math.dist(in_world(flat, point), in_world(turned, point)) < 3e-4
+
+
+def in_world(pose, point):
+    """A point of a link's frame in the world, by the quaternion of its pose."""
+    *v, w = pose["quat_xyzw"]
+    t = [2 * x for x in crossed(v, point)]
+    return [p + q + w * a + b for p, q, a, b in zip(pose["xyz"], point, t, crossed(v, t))]
+
+
+def crossed(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 
 
 def test_a_start_is_found_and_written(case):

@@ -41,6 +41,7 @@ BAD = {
     "phases missing": (changed(STEPS, phases=None), "'phases' is missing"),
     "unknown link": (with_contact(link="left_fot"), "contacts.left.link: unknown value 'left_fot'; the nearest known one is 'left_foot'"),
     "point": (with_contact(points=[[0, 0]]), "contacts.left.points[0]: has 2 items"),
+    "edge": (with_contact(keeps="edge", points=[[0.1, 0, 0], [0.1, 0, 0]]), "contacts.left.points: has no edge, its first and last point are 0 mm apart"),
     "nan": (with_contact(points=[[0, 0, NAN]]), "contacts.left.points[0][2]"),
     "normal": (with_contact(normal=[0, 0, 0]), "contacts.left.normal"),
     "joint": (with_phases(dict(CROUCH, joints={"left_kne": 0.1})), "unknown value 'left_kne'; the nearest known one is 'left_knee'"),

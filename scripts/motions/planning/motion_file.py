@@ -8,12 +8,14 @@ KEYS = ("robot", "rate", "margin", "speed", "effort", "friction", "shift_duratio
 CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "friction", "force", "keeps")
 START_KEYS = ("contacts", "com", "height", "rpy", "joints")
 PHASE_KEYS = ("name", "duration", "com", "body", "move", "release", "joints")
-KEEPS = ("pose", "position")
+KEEPS = ("pose", "edge", "position")
 FASTEST_RATE, LONGEST_PHASE, MOST_PHASES, MOST_POINTS, FARTHEST = 1000, 3600, 1000, 64, 1000
+SHORTEST_EDGE = 1e-3  # [m]
 
 # Where a link may touch: points in the link's frame; outward normals of the environment, in the link's frame or, if `facing`, in the world; friction;
-# most normal force [N] per point, None for the robot's weight; keeps_turn: whether a held link may not turn. Its middle is that of its points.
-Contact = collections.namedtuple("Contact", "name link points normals facing friction force keeps_turn middle")
+# most normal force [N] per point, None for the robot's weight; keeps: one of KEEPS, of a held link; edge: unit vector from the first point to the last
+# in the link's frame, about which one that keeps its edge turns, else None. Its middle is that of its points.
+Contact = collections.namedtuple("Contact", "name link points normals facing friction force keeps edge middle")
 # One target of the centre of mass: kind is "over" (value: names of contacts), "xy" or "by" (value: [m]).
 CentreTarget = collections.namedtuple("CentreTarget", "kind value")
 # One target of the body: kind is "height" or "rise", or None; rpy or None.
@@ -108,7 +110,16 @@ def read_contact(name, field, friction):
         field.below("points").refuse("has %d items; write 1 to %d" % (len(points), MOST_POINTS))
     keeps = field.below("keeps").choice(KEEPS) if "keeps" in field.value else "pose"
     return Contact(name, field.below("link").text(), points, read_normals(field, len(points)), "facing" in field.value, within(field, "friction", friction, 0.01, 10),
-                   within(field, "force", None, 1e-3, 1e6), keeps == "pose", points.mean(axis=0))
+                   within(field, "force", None, 1e-3, 1e6), keeps, read_edge(field, points) if keeps == "edge" else None, points.mean(axis=0))
+
+
+def read_edge(field, points):
+    """Unit vector along the edge of a contact that turns about it."""
+    along = points[-1] - points[0]
+    length = np.linalg.norm(along)
+    if length < SHORTEST_EDGE:
+        field.below("points").refuse("has no edge, its first and last point are %g mm apart; write the edge's ends" % (1e3 * length))
+    return along / length
 
 
 def read_normals(field, count):

@@ -288,8 +288,9 @@ class Planner:
             rotation, _ = frame_of(self.placed, contact)
             goal = (rotation if way.rpy is None else np.array(from_rpy(way.rpy)), way.to)
             ways.append((contact, still(goal)))
+        stands = {self.motion.contacts[name].link for name in start.contacts}
         for name in self.holding:
-            if name not in start.contacts:
+            if self.motion.contacts[name].link not in stands:
                 ways.append((self.motion.contacts[name], still(frame_of(self.placed, self.motion.contacts[name]))))
         self.solve_start(ways, start)
         self.frames = {name: frame_of(self.placed, self.motion.contacts[name]) for name in list(self.frames) + list(start.contacts)}

@@ -41,6 +41,21 @@ def frame_of(placed, contact):
     return rotation, position + rotation @ contact.middle
 
 
+def kept_turns(contact, rotation):
+    """Rows that pick, of an error of six, the turns that a contact may not make where its link has a rotation."""
+    rows = np.hstack([np.zeros((3, 3)), np.eye(3)])
+    if contact.keeps == "pose":
+        return rows
+    return rows[:0] if contact.edge is None else across(rotation @ contact.edge) @ rows
+
+
+def across(axis):
+    """Two unit vectors, as rows, at right angles to a unit vector and to each other."""
+    side = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    side /= np.linalg.norm(side)
+    return np.array([side, np.cross(axis, side)])
+
+
 class Between:
     """A vector that goes smoothly from one value to another."""
 
@@ -65,8 +80,8 @@ class PhaseTasks:
             rotation, middle = way.at(share)
             is_rotation, is_middle = frame_of(placed, contact)
             jacobian, error = placed.point_jacobian(contact.link, is_middle), np.append(middle - is_middle, rotation_vector(rotation @ is_rotation.T))
-            kept = 6 if contact.keeps_turn else 3
-            rows.append((contact.name, jacobian[:kept], error[:kept]))
+            kept = np.vstack([np.eye(6)[:3], kept_turns(contact, rotation)])
+            rows.append((contact.name, kept @ jacobian, kept @ error))
         if self.centre is not None:
             rows.append((CENTRE, placed.centre_jacobian()[:2], self.centre.at(share) - placed.centre_of_mass[:2]))
         return rows

@@ -4,9 +4,10 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path[:0] = [str(ROOT / "test" / "support"), str(ROOT / "scripts" / "support")]
+sys.path[:0] = [str(ROOT / "test" / "support"), str(ROOT / "test" / "support" / "figures"), str(ROOT / "scripts" / "support")]
 import gripper_motions  # noqa: E402
 import kinematics  # noqa: E402
+from climbing import CLIMB_ASKED, climbs  # noqa: E402
 from foot_forces import FootForces, pose_in  # noqa: E402
 from scene_runs import read_motion, simulate, world  # noqa: E402
 from shared_data import shared_data  # noqa: E402
@@ -268,6 +269,7 @@ CASES = {
     "hubo_ladder_fall": (WHOLE_ASKED + "; begins before the ladder, leaning back on its heels, and falls onto it",
                          on_its_own("hubo_ladder", 6.0, pose={"xyz": [0.248, -0.00247315, 1.0], "rpy": [0.0, -0.25, 0.0]})),
     "hubo_stepladder": (WHOLE_ASKED, on_its_own("paper_hubo_stepladder_150k", 10.0)),
+    "hubo_stepladder_climb": (CLIMB_ASKED, climbs("paper_hubo_stepladder_150k", "hubo_up_a_stepladder")),
     "hubo_chair": (WHOLE_ASKED, on_its_own("paper_hubo_chair_150k", 3.0)),
     "hubo_chair_floor": (WHOLE_ASKED + "; on the other side of the chair, where the scan has a floor",
                          on_its_own("paper_hubo_chair_150k", 10.0, pose={"xyz": [0.7, 0.05, 1.0032431]})),
