@@ -152,6 +152,31 @@ TEST(CylinderLoads, APencilStandsOnItsEndUpToItsAngle) {
   }
 }
 
+/** Fingers that close on a can, upright and lying along them: it falls by what friction leaves of its weight. */
+TEST(CylinderLoads, FingersHoldACanAsFrictionLetsThem) {
+  constexpr double FRICTION = 0.4;
+  const Vector3 plate(0.04, 0.3, 0.5);
+  for (const bool upright : {false, true})
+    for (const double share : {0.45, 0.55}) {  // of the weight, on each finger
+      SimulationConfig config = roundConfig(FRICTION, LAYER_OF_CAN);
+      const double apart = OUTER + plate.x() / 2 + LAYER_OF_CAN, force = share * CAN.mass * G / FRICTION;
+      const auto finger = [&](const char* name, double x) {
+        return jointedText(name, "prismatic", fmt::format(R"(xyz="{} 0 0")", x), x < 0 ? "1 0 0" : "-1 0 0", boxText(plate, 0.2));
+      };
+      config.robots = {machine("hand", finger("left", -apart) + finger("right", apart))};
+      config.objects = {cylinderAlongY("can", CAN, {0, 0, 0})};
+      if (upright) config.objects[0].X_WO = Pose::Identity();
+      Simulator simulator(config, model::UriResolver());
+      for (const int joint : simulator.robots()[0].joints) simulator.applyEffort(joint, force, {0, -1});
+      stepFor(&simulator, 0.05);
+      const double start = bodyOf(simulator, "can").v_WCom.z();
+      stepFor(&simulator, 0.1);
+      const double falls = std::max(0.0, 1 - 2 * share) * G * 0.1;
+      EXPECT_NEAR(start - bodyOf(simulator, "can").v_WCom.z(), falls, 1e-4) << upright << " " << share;
+      EXPECT_NEAR(bodyOf(simulator, "can").w_WB.norm(), 0, 1e-4) << upright << " " << share;
+    }
+}
+
 /** A coin that slides and spins flat on its rim: slides mu g where it does not spin. */
 TEST(CylinderLoads, ACoinThatSpinsFlatIsBrakedByItsRim) {
   const SolidCylinder coin{0.05, 0.01, 1};

@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Groups, RandomScenes, ::testing::Range(0, GROUPS));
 class RoundScenes : public ::testing::TestWithParam<int> {};
 
 TEST_P(RoundScenes, StaySoundAndGoThroughNoWall) {
-  for (int i = 0; i < samples(15); ++i) expectSound(1 + static_cast<std::uint64_t>(15 * GetParam() + i), 0.1, true);
+  for (int i = 0; i < samples(8); ++i) expectSound(1 + static_cast<std::uint64_t>(8 * GetParam() + i), 0.06, true);
 }
 INSTANTIATE_TEST_SUITE_P(Groups, RoundScenes, ::testing::Range(0, 8));
 

@@ -234,10 +234,11 @@ inline RandomScene roundScene(std::uint64_t seed) {
   if (n.chance(0.3)) scene.config.contact.surface.friction = n.uniform(0, 1.5);
   scene.config.contact.shrink = n.chance(0.3);
   const int robot = n.count(0, 9);
-  if (robot <= 1) addRobot(randomCart(&n, "cart", place.base, place.size), &scene);
-  if (robot == 2) addRobot(randomRollers(&n, "rollers", place.base, place.size * n.uniform(0.3, 1)), &scene);
+  const Vector3 beside = place.base + Vector3(place.hole > 0 ? 12 * place.size : 0, 0, 0);  // a tube has no room
+  if (robot <= 1) addRobot(randomCart(&n, "cart", beside, place.size), &scene);
+  if (robot == 2) addRobot(randomRollers(&n, "rollers", beside, place.size * n.uniform(0.3, 1)), &scene);
   if (robot == 3) addGrasp(&n, place, &scene);
-  if (robot <= 2) place.base.z() += 2.5 * place.size;
+  if (robot <= 2 && place.hole == 0) place.base.z() += 2.5 * place.size;
   const int most = n.chance(0.7) ? 6 : 25;
   addRoundBodies(&n, n.count(1, most), &place, &scene);
   if (n.chance(0.3)) addOthers(&n, place, &scene);
