@@ -7,9 +7,9 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double LAYER_OF_CAN = 0.001;   // [m]
-const SolidCylinder CAN{0.049, 0.2, 2};  // with its layer it rolls at OUTER
-constexpr double OUTER = 0.05;           // [m]
+constexpr double LAYER_OF_CAN = 0.001;  // [m]
+constexpr double OUTER = 0.05;          // [m]
+const SolidCylinder CAN{OUTER, 0.2, 2};
 
 /** [N] Upward force of fixed surfaces at places from y_low to y_high. */
 double forceBetween(const StepReport& report, double y_low, double y_high) {
@@ -28,7 +28,7 @@ TEST(CylinderLoads, RimsShareAWeightThatIsOffTheMiddle) {
   config.objects = {cylinderAlongY("can", CAN, {0, 0, OUTER}, OFF)};
   Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.2);
-  const double weight = CAN.mass * G, share = OFF / CAN.length;
+  const double weight = CAN.mass * G, share = OFF / CAN.core(LAYER_OF_CAN).length;
   EXPECT_NEAR(forceBetween(simulator.report(), 0, 1), weight * (0.5 + share), 1e-6 * weight);
   EXPECT_NEAR(forceBetween(simulator.report(), -1, 0), weight * (0.5 - share), 1e-6 * weight);
 }
@@ -36,7 +36,7 @@ TEST(CylinderLoads, RimsShareAWeightThatIsOffTheMiddle) {
 /** A log across two fixed ones, at unequal distances. */
 TEST(CylinderLoads, CrossedLogsShareAWeightByLevers) {
   constexpr double LEFT = -0.03, RIGHT = 0.07;
-  const SolidCylinder below{0.029, 0.4, 1};
+  const SolidCylinder below{0.03, 0.4, 1};
   const auto beam = [&](const char* name, double y) {
     return jointedText(name, "fixed", fmt::format(R"(xyz="0 {} 0" rpy="0 1.5707963267948966 0")", y), "0 0 1", cylinderText(below));
   };
@@ -107,8 +107,9 @@ TEST(CylinderLoads, ACoinOnItsRimWobblesWithoutLoss) {
   constexpr double LEAN = 0.25, THIN = 1e-4;
   SimulationConfig config = roundConfig(3, THIN);
   config.environments = {level()};
-  const double half = coin.length / 2, below = coin.radius * std::sin(LEAN) + half * std::cos(LEAN) + THIN;
-  const double beside = coin.radius * std::cos(LEAN) - half * std::sin(LEAN);
+  const SolidCylinder core = coin.core(THIN);
+  const double half = core.length / 2, below = core.radius * std::sin(LEAN) + half * std::cos(LEAN) + THIN;
+  const double beside = core.radius * std::cos(LEAN) - half * std::sin(LEAN);
   // The middle stays, so the spin is along the radius to the contact; its moment is the change of momentum.
   const Vector3 axis(std::sin(LEAN), 0, std::cos(LEAN)), arm(beside, 0, -below);
   const Vector3 along_arm = arm.normalized();
@@ -138,13 +139,14 @@ TEST(CylinderLoads, ACoinOnItsRimWobblesWithoutLoss) {
 TEST(CylinderLoads, APencilStandsOnItsEndUpToItsAngle) {
   const SolidCylinder pencil{0.0035, 0.175, 0.006};
   constexpr double THIN = 1e-4;
-  const double balance = std::atan2(pencil.radius, pencil.length / 2);
+  const SolidCylinder core = pencil.core(THIN);
+  const double balance = std::atan2(core.radius, core.length / 2);
   for (const double part : {0.0, 0.9, 1.1}) {
     SimulationConfig config = roundConfig(0.6, THIN);
     config.environments = {level()};
     config.objects = {cylinderAlongY("pencil", pencil, {0, 0, 0})};
     const double lean = part * balance;
-    config.objects[0].X_WO = makePose({0, 0, pencil.length / 2 * std::cos(lean) + pencil.radius * std::sin(lean) + THIN}, {0, lean, 0});
+    config.objects[0].X_WO = makePose({0, 0, core.length / 2 * std::cos(lean) + core.radius * std::sin(lean) + THIN}, {0, lean, 0});
     Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, 2);
     const double upright = bodyOf(simulator, "pencil").X_WB.linear()(2, 2);
@@ -177,6 +179,30 @@ TEST(CylinderLoads, FingersHoldACanAsFrictionLetsThem) {
     }
 }
 
+/** A coin whose end lies down within a step as its rim hits the ground: no part of it goes below. */
+TEST(CylinderLoads, ACoinThatSlapsDownStopsOnTheGround) {
+  const SolidCylinder coin{0.01, 0.002, 0.005};
+  constexpr double THIN = 2e-4;
+  for (const double lean : {0.06, 0.11, 0.2})
+    for (const double speed : {1.0, 4.0, 8.0}) {
+      SimulationConfig config = roundConfig(0, THIN);
+      config.environments = {level()};
+      config.objects = {cylinderAlongY("coin", coin, {0, 0, 0})};
+      config.objects[0].X_WO = makePose({0, 0, 0.008}, {0, lean, 0});
+      config.objects[0].linear_velocity = {0, 0, -speed};
+      Simulator simulator(config, model::UriResolver());
+      double lowest = 1;
+      for (int i = 0; i < 30; ++i) {
+        simulator.step();
+        const Pose X = bodyOf(simulator, "coin").X_WB;
+        const double upright = X.linear()(2, 2);
+        lowest = std::min(lowest, X.translation().z() - 0.5 * coin.length * std::abs(upright) -
+                                      coin.radius * std::sqrt(std::max(0.0, 1 - upright * upright)));
+      }
+      EXPECT_GT(lowest, -THIN) << lean << " " << speed;
+    }
+}
+
 /** A coin that slides and spins flat on its rim: slides mu g where it does not spin. */
 TEST(CylinderLoads, ACoinThatSpinsFlatIsBrakedByItsRim) {
   const SolidCylinder coin{0.05, 0.01, 1};
@@ -184,11 +210,11 @@ TEST(CylinderLoads, ACoinThatSpinsFlatIsBrakedByItsRim) {
   SimulationConfig config = roundConfig(FRICTION, 1e-4);
   config.environments = {level()};
   config.objects = {cylinderAlongY("coin", coin, {0, 0, 0})};
-  config.objects[0].X_WO = makePose({0, 0, coin.length / 2 + 1e-4});
+  config.objects[0].X_WO = makePose({0, 0, coin.length / 2});
   config.objects[0].angular_velocity = {0, 0, SPIN};
   Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.2);
-  const double theory = FRICTION * coin.mass * G * coin.radius / coin.along() * 0.2;
+  const double theory = FRICTION * coin.mass * G * coin.core(1e-4).radius / coin.along() * 0.2;
   EXPECT_NEAR(SPIN - bodyOf(simulator, "coin").w_WB.z(), theory, 1e-3 * theory);
 }
 

@@ -1,4 +1,4 @@
-// Scenes of URDF cylinders, whose layers lie around them.
+// Scenes of URDF cylinders, whose layers lie inside of them.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,6 +13,8 @@ namespace blem_sim::sim {
 struct SolidCylinder {
   double radius, length, mass;  // [m], [kg]
 
+  /** Less a layer [m] inside: its rims bear it. */
+  SolidCylinder core(double layer) const { return {radius - layer, length - 2 * layer, mass}; }
   /** [kg m^2] */
   double along() const { return 0.5 * mass * radius * radius; }
   double across() const { return mass * (3 * radius * radius + length * length) / 12; }
@@ -47,7 +49,7 @@ inline RobotConfig machine(const std::string& name, const std::string& links) {
   return robot(name, fmt::format(R"(<robot name="{}"><link name="frame"/>)", name) + links + "</robot>", true);
 }
 
-/** @param layer [m] around all that moves */
+/** @param layer [m] inside of cylinders, around boxes */
 inline SimulationConfig roundConfig(double friction, double layer) {
   SimulationConfig config;
   config.contact.surface.friction = friction;

@@ -15,6 +15,7 @@ namespace {
 
 // Sines of the lean from which on a rim has a lowest point; beyond which it rolls on it, and its other vertices fade; and are gone.
 constexpr double LEANS = 1e-3, ROLLS = 0.05, ROLLS_ALONE = 0.1;
+constexpr double SLAPS = 0.5;     // up to which an end may lie down within a step
 constexpr double ON_MESH = 1e-7;  // [m] from the mesh; points farther away are those of contacts that fade
 
 /** A cylinder in the world, and the surface that it meets. */
@@ -104,7 +105,7 @@ void RoundSide::overPlane(int vertex, Contact* contact) const {
     const double lower = way.dot(towards);
     contact->point += X_WK_.linear() * (way - 0.5 * lower * towards);
     contact->depth += lower;
-  } else {
+  } else if (2 * from_lowest != sides || lean > SLAPS) {  // the opposite one stays: an end that slaps down stops there
     contact->depth -= lean < ROLLS_ALONE ? cylinder_.radius * std::max(0.0, lean - ROLLS) : std::numeric_limits<double>::infinity();
   }
   if (lean < ROLLS) return;

@@ -58,8 +58,8 @@ inline RandomRobot randomCart(SceneNumbers* n, const std::string& name, const Ve
   setRoundRobot(name, text, surface, &robot);
   robot.config.self_collision = n->chance(0.2);
   const double over = n->chance(0.5) ? 0 : n->uniform(0, 2) * size;
-  robot.config.X_WR = standingAt(place + Vector3(0, 0, wheel.radius + outerLayer(surface) + over), n->chance(0.2) ? n->uniform(-1, 1) : 0,
-                                 n->uniform(-M_PI, M_PI), 0);
+  robot.config.X_WR =
+      standingAt(place + Vector3(0, 0, wheel.radius + over), n->chance(0.2) ? n->uniform(-1, 1) : 0, n->uniform(-M_PI, M_PI), 0);
   robot.description = fmt::format("cart on {} wheels of {:.2g} m, {:.2g} on {:.2g} kg{}", 2 * axles, size, load, mass,
                                   robot.driven ? fmt::format(", at {:.2g} rad/s", speed) : "");
   return robot;

@@ -130,7 +130,7 @@ inline void spinAtStart(SceneNumbers* n, double size, sim::ObjectConfig* object)
 inline void stackRound(SceneNumbers* n, const RoundShape& shape, RoundPlace* place, sim::ObjectConfig* object) {
   const std::size_t columns = 3, column = static_cast<std::size_t>(n->count(0, columns - 1));
   place->heights.resize(columns, 0);
-  const double layer = object->contact.boundary_width->metres, half = 0.5 * shape.length + outerLayer(object->contact);
+  const double layer = object->contact.boundary_width->metres, half = 0.5 * shape.length;
   double& height = place->heights[column];
   object->X_WO = standingAt(
       place->base + Vector3(2.5 * place->size * (static_cast<double>(column) - 1), 0, height + half + n->uniform(-0.1, 0.3) * layer), 0, 0,
@@ -140,7 +140,7 @@ inline void stackRound(SceneNumbers* n, const RoundShape& shape, RoundPlace* pla
 
 /** Lying along y, beside the ones before, at rest or rolling along x. @param i how many lie already */
 inline void layRound(SceneNumbers* n, const RoundShape& shape, int i, const RoundPlace& place, sim::ObjectConfig* object) {
-  const double radius = shape.radius + outerLayer(object->contact), x = 1.05 * place.size * (i % 5 - 2), z = 1.2 * place.size * (i / 5);
+  const double radius = shape.radius, x = 1.05 * place.size * (i % 5 - 2), z = 1.2 * place.size * (i / 5);
   object->X_WO =
       standingAt(place.base + Vector3(x, n->uniform(-0.2, 0.2) * place.size, radius + z), M_PI / 2, M_PI / 2, n->uniform(-M_PI, M_PI));
   if (n->chance(0.4)) return;
@@ -155,7 +155,7 @@ inline void leanRound(SceneNumbers* n, const RoundShape& shape, int i, const Rou
   const double lean = in_hole ? n->uniform(-0.05, 0.05) : n->chance(0.3) ? n->spread(1e-6, 0.2) : n->uniform(0, M_PI / 2);
   const Vector3 beside =
       in_hole ? Vector3(0, 0, 1.2 * place.size * i) : Vector3(2.5 * place.size * (i % 5 - 2), 2.5 * place.size * (i / 5), 0);
-  const double height = reachBelow(shape, lean) + outerLayer(object->contact);
+  const double height = reachBelow(shape, lean);
   object->X_WO = standingAt(place.base + beside + Vector3(0, 0, height), lean, n->uniform(-M_PI, M_PI), n->uniform(-M_PI, M_PI));
   spinAtStart(n, place.size, object);
 }

@@ -39,7 +39,7 @@ inline std::string roundText(const RoundShape& shape, double mass) {
                      mass, across, across, along, shape.radius, shape.length);
 }
 
-/** Layer's width and whether the shape keeps its size inside of it. */
+/** Layer's width, inside of a cylinder, and whether boxes beside it shrink. */
 inline sim::ContactOverrides roundSurface(SceneNumbers* n, double shortest) {
   sim::ContactOverrides surface;
   surface.boundary_width = std::min(0.0025, shortest * n->uniform(0.02, 0.1));
@@ -47,9 +47,6 @@ inline sim::ContactOverrides roundSurface(SceneNumbers* n, double shortest) {
   if (n->chance(0.2)) surface.friction = n->uniform(0, 1.5);
   return surface;
 }
-
-/** [m] From the bare shape of the URDF to its outer border. */
-inline double outerLayer(const sim::ContactOverrides& surface) { return *surface.shrink ? 0 : surface.boundary_width->metres; }
 
 inline sim::ObjectConfig roundObject(SceneNumbers* n, const std::string& name, const RoundShape& shape) {
   sim::ObjectConfig object;
