@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sim/cylinder_scene.h"
+#include "support/range.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -13,22 +14,12 @@ const SolidCylinder LOG{ROLLS_AT, 0.3, 2};
 constexpr double SLOPE = 0.1;  // [rad]
 const Vector3 DOWNHILL = G * Vector3(std::sin(SLOPE), 0, -std::cos(SLOPE));
 
-/** Lowest and highest place of a body's middle. */
-struct Heights {
-  double lowest = INFINITY, highest = -INFINITY;
-
-  void look(double z) {
-    lowest = std::min(lowest, z);
-    highest = std::max(highest, z);
-  }
-  double range() const { return highest - lowest; }
-};
-
-Heights rollOn(Simulator* simulator, int steps, const std::string& model) {
-  Heights seen;
+/** Heights [m] of a body's middle. */
+Range rollOn(Simulator* simulator, int steps, const std::string& model) {
+  Range seen;
   for (int i = 0; i < steps; ++i) {
     simulator->step();
-    seen.look(bodyOf(*simulator, model).X_WB.translation().z());
+    seen.add(bodyOf(*simulator, model).X_WB.translation().z());
   }
   return seen;
 }
@@ -43,7 +34,7 @@ TEST(RollingCylinders, ALargeDrumRollsLevelHoweverSlow) {
       config.objects = {cylinderAlongY("drum", drum, {0, 0, drum.radius})};
       roll(speed, drum.radius, &config.objects[0]);
       Simulator simulator(config, model::UriResolver());
-      EXPECT_LT(rollOn(&simulator, static_cast<int>(0.25 / speed / config.time_step), "drum").range(), 1e-7) << speed << " " << layer;
+      EXPECT_LT(rollOn(&simulator, static_cast<int>(0.25 / speed / config.time_step), "drum").width(), 1e-7) << speed << " " << layer;
       EXPECT_NEAR(bodyOf(simulator, "drum").v_WCom.x(), speed, 1e-6 * speed) << speed << " " << layer;
     }
   }
@@ -67,10 +58,10 @@ TEST(RollingCylinders, ALogRollsDownRails) {
       Simulator simulator(config, model::UriResolver());
       rollOn(&simulator, 100, "log");
       const double start = bodyOf(simulator, "log").v_WCom.x();
-      const Heights seen = rollOn(&simulator, 1000, "log");
+      const Range seen = rollOn(&simulator, 1000, "log");
       const double theory = G * std::sin(SLOPE) / 1.5;
       EXPECT_NEAR(bodyOf(simulator, "log").v_WCom.x() - start, theory, 1e-5) << radius << " " << width;
-      EXPECT_LT(seen.range(), 1e-6) << radius << " " << width;
+      EXPECT_LT(seen.width(), 1e-6) << radius << " " << width;
     }
 }
 
@@ -88,10 +79,10 @@ TEST(RollingCylinders, ALogThatSpinsInAGrooveIsBrakedByBothSides) {
   Simulator simulator(config, model::UriResolver());
   rollOn(&simulator, 100, "log");
   const double start = bodyOf(simulator, "log").w_WB.y();
-  const Heights seen = rollOn(&simulator, 500, "log");
+  const Range seen = rollOn(&simulator, 500, "log");
   const double theory = FRICTION * ROLLS_AT * LOG.mass * G * std::sqrt(2.0) / (1 + FRICTION * FRICTION) / LOG.along();
   EXPECT_NEAR((start - bodyOf(simulator, "log").w_WB.y()) / 0.5, theory, 1e-4 * theory);
-  EXPECT_LT(seen.range(), 1e-6);
+  EXPECT_LT(seen.width(), 1e-6);
 }
 
 /** The log turns about one edge, then about the other [McGeer 1990]; layers only round the edges. */
@@ -210,8 +201,8 @@ TEST(RollingCylinders, ALogRollsOverSeamsAtSpeed) {
         log.angular_velocity = turn.linear() * log.angular_velocity;
       }
       Simulator simulator(config, model::UriResolver());
-      const Heights seen = rollOn(&simulator, 1000, "log");
-      EXPECT_LT(seen.range(), 1e-7) << askew << " " << floors.size();
+      const Range seen = rollOn(&simulator, 1000, "log");
+      EXPECT_LT(seen.width(), 1e-7) << askew << " " << floors.size();
       EXPECT_NEAR(bodyOf(simulator, "log").v_WCom.norm(), SPEED, 1e-6) << askew << " " << floors.size();
     }
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world.h"
+#include "support/range.h"
 
 namespace blem_sim {
 
@@ -105,16 +106,6 @@ class StepTimes {
  private:
   double start_ = 0, residual_ = NAN, iterations_ = NAN;
   std::vector<double> microseconds_;
-};
-
-/** Least and greatest of a quantity. */
-struct Range {
-  double low = INFINITY, high = -INFINITY;
-  void add(double x) {
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-  double width() const { return high - low; }
 };
 
 }  // namespace blem_sim

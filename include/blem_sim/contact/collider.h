@@ -81,9 +81,8 @@ struct Collider {
   int link = -1;                 ///< link of its robot, else -1
   Pose X_BC = Pose::Identity();  ///< geometry frame in the body's frame (in the world's if static)
   std::shared_ptr<const CollisionGeometry> geometry;
-  std::shared_ptr<const CollisionGeometry>
-      outside;        ///< surface that encloses the layer, where the geometry lies that much deeper; else null
-  double radius = 0;  ///< [m] r, boundary width
+  std::shared_ptr<const CollisionGeometry> outside;  ///< surface that the layer reaches, if that lies inside of it; else null
+  double radius = 0;                                 ///< [m] r, boundary width
   SurfaceProperties surface;
   bool enabled = true;  ///< false: an unloaded slot, never collides; the next environment takes it
 
