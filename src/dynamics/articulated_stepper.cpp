@@ -8,15 +8,13 @@
 
 #include "blem_sim/geometry/roomy.h"
 #include "free_way_books.h"
-#include "island/island.h"
 #include "island/island_motion.h"
+#include "island/island_readings.h"
 #include "island/island_wrenches.h"
+#include "island/step_islands.h"
 #include "island/tree_state.h"
 #include "kept_trees.h"
 #include "problem/contact_work.h"
-#include "problem/make_terms.h"
-#include "scene/contact_motion.h"
-#include "trees/islands.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -50,8 +48,6 @@ class ArticulatedStepper : public Stepper {
   void rebuild(const Scene& scene);
   bool isOurs(const Scene& scene, int tree) const;
   void readEdits(const Scene& scene);
-  void findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts);
-  bool isMoved(const ContactConstraint& contact) const;
   NewtonSettings settingsFor(const Island& island) const;
   bool leap(const TermSource& source, Island* island);
   TreeAhead ahead(const TermSource& source, const Island& island, int tree) const;
@@ -63,8 +59,6 @@ class ArticulatedStepper : public Stepper {
   template <typename Work>
   void forEachIsland(const Work& work);
   void report(double dt, SolveResult* result) const;
-  void readContacts(const StepInput& input, const Island& island, SolveResult* result) const;
-  void readJoints(const StepInput& input, const Island& island, SolveResult* result);
   void remember(const StepInput& input, const SolveResult& result);
   void noteWritten(const Scene& scene, int tree);
   void writeScene(Scene* scene);
@@ -80,9 +74,7 @@ class ArticulatedStepper : public Stepper {
   std::vector<BodyBits> written_;  ///< per node: bits that the scene was given last
   SolverSpace space_;
   ImpactSpace impact_space_;
-  Islands islands_;
-  std::vector<Island> islands_of_step_;
-  int island_count_ = 0;
+  StepIslands islands_;
   std::vector<ContactRecord> next_contacts_;
 };
 
@@ -120,41 +112,6 @@ void ArticulatedStepper::readEdits(const Scene& scene) {
     computeInertias(forest_, tree, &motion_);
     joinVelocities(forest_, scene, tree, &motion_, &space_);
     takeMomentum(forest_, tree, &motion_, &space_);
-  }
-}
-
-// Whether a body of the contact can move; a contact between two that cannot is no contact.
-bool ArticulatedStepper::isMoved(const ContactConstraint& c) const {
-  const auto moved = [&](int body) { return body != WORLD_BODY && forest_.nodes()[forest_.nodeOfBody(body)].last_dof >= 0; };
-  return moved(c.body_a) || moved(c.body_b);
-}
-
-void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts) {
-  const auto treeOfNode = [&](int node) { return forest_.nodes()[node].tree; };
-  const auto treeOfBody = [&](int body) { return treeOfNode(forest_.nodeOfBody(body)); };
-  islands_.reset(static_cast<int>(forest_.trees().size()));
-  for (const ContactConstraint& c : contacts)
-    if (c.body_a != WORLD_BODY && c.body_b != WORLD_BODY && isUsable(scene, c)) islands_.join(treeOfBody(c.body_a), treeOfBody(c.body_b));
-  for (const MimicRelation& m : forest_.mimics()) islands_.join(treeOfNode(m.node), treeOfNode(m.master));
-  for (const LoopClosure& l : forest_.loops())
-    if (l.parent >= 0) islands_.join(treeOfNode(l.child), treeOfNode(l.parent));
-  island_count_ = islands_.number();
-  if (static_cast<int>(islands_of_step_.size()) < island_count_) islands_of_step_.resize(island_count_);
-  for (int i = 0; i < island_count_; ++i) {
-    Island& island = islands_of_step_[i];
-    island.model.clear();
-    for (auto* list : {&island.contacts, &island.mimics, &island.loops}) list->clear();
-  }
-  for (std::size_t t = 0; t < forest_.trees().size(); ++t)
-    islands_of_step_[islands_.islandOf(static_cast<int>(t))].model.trees.push_back(static_cast<int>(t));
-  const auto islandOfNode = [&](int node) { return &islands_of_step_[islands_.islandOf(treeOfNode(node))]; };
-  for (std::size_t m = 0; m < forest_.mimics().size(); ++m) islandOfNode(forest_.mimics()[m].node)->mimics.push_back(static_cast<int>(m));
-  for (std::size_t l = 0; l < forest_.loops().size(); ++l) islandOfNode(forest_.loops()[l].child)->loops.push_back(static_cast<int>(l));
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const ContactConstraint& c = contacts[i];
-    if (!isUsable(scene, c) || !isMoved(c)) continue;
-    const int body = c.body_a != WORLD_BODY ? c.body_a : c.body_b;
-    islands_of_step_[islands_.islandOf(treeOfBody(body))].contacts.push_back(static_cast<int>(i));
   }
 }
 
@@ -233,7 +190,7 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
 void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result) {
   const IslandModel& model = island->model;
   readContacts(input, *island, result);
-  readJoints(input, *island, result);
+  readJoints(input, *island, result, &memory_.joints);
   for (const int tree : model.trees) {
     const ForestTree& t = forest_.trees()[tree];
     motion_.next_velocity.segment(t.first_dof, t.dofCount()) = space_.velocity.segment(t.first_dof, t.dofCount());
@@ -247,50 +204,10 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   island->impacts.takeFrom(forest_, model.trees, &motion_.change);
 }
 
-void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
-  forPairs(island.solver.atHand(), [&](std::size_t index) {
-    const PairContacts& of_pair = island.model.pairs[index];
-    for (int i = of_pair.first; i < of_pair.end; ++i) {
-      const int contact = island.contacts[i];
-      const double sign = termSign(input.contacts[contact]);
-      result->contact_forces[contact] = sign / input.dt * island.solver.found().terms.contacts[i].impulse;
-      result->apparent_work[contact] = island.apparent_work[i];
-    }
-  });
-}
-
-void ArticulatedStepper::readJoints(const StepInput& input, const Island& island, SolveResult* result) {
-  const IslandAnswer& found = island.solver.found();
-  const auto read = [&](const JointTerm& j, double v) {
-    JointRecord& record = memory_.joints[j.joint];
-    const double last = record.dry, bound = j.dry_bound / input.dt;
-    record.dry = j.dryImpulse(v) / input.dt;
-    record.lower = j.lowerImpulse(v) / input.dt;
-    record.upper = j.upperImpulse(v) / input.dt;
-    record.dry_change = std::abs(record.dry) < bound && std::abs(last) < bound ? record.dry - last : 0;
-    const JointDrive& drive = input.drives[j.joint];
-    result->motor_efforts[j.joint] = drive.effort + j.motorImpulse(v) / input.dt;
-    result->axis_efforts[j.joint] = drive.givenEffort() + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
-  };
-  for (const JointTerm& j : found.terms.joints) read(j, space_.velocity[j.dof]);
-  for (std::size_t l = 0; l < island.loops.size(); ++l) {
-    const LoopTerm& loop = found.terms.loops[l];
-    memory_.joints[forest_.loops()[island.loops[l]].joint].loop = loop.impulses() / input.dt;
-    if (loop.rows < 6) read(loop.drive, loop.velocity[5]);
-  }
-  // A mimic joint feels its master's pull, the master its reaction.
-  for (std::size_t i = 0; i < island.mimics.size(); ++i) {
-    const MimicRelation& m = forest_.mimics()[island.mimics[i]];
-    const double effort = found.mimic_impulses[i] / input.dt;
-    result->axis_efforts[forest_.nodes()[m.node].joint] += effort;
-    result->axis_efforts[forest_.nodes()[m.master].joint] -= m.multiplier * effort;
-  }
-}
-
 void ArticulatedStepper::remember(const StepInput& input, const SolveResult& result) {
   next_contacts_.clear();
-  for (int n = 0; n < island_count_; ++n) {
-    const Island& island = islands_of_step_[n];
+  for (int n = 0; n < islands_.count(); ++n) {
+    const Island& island = islands_[n];
     for (std::size_t i = 0; i < island.contacts.size(); ++i) {
       const ContactConstraint& c = input.contacts[island.contacts[i]];
       // The impulse of an impact does not go on in the next step.
@@ -317,15 +234,15 @@ void ArticulatedStepper::writeScene(Scene* scene) {
 // Islands share nothing that they write, so their order does not matter.
 template <typename Work>
 void ArticulatedStepper::forEachIsland(const Work& work) {
-  const bool alone = island_count_ == 1 && islands_of_step_[0].contacts.size() < SHARED;
+  const bool alone = islands_.count() == 1 && islands_[0].contacts.size() < SHARED;
   if (settings_.threads == 1 || alone) {
-    for (int i = 0; i < island_count_; ++i) work(&islands_of_step_[i]);
+    for (int i = 0; i < islands_.count(); ++i) work(&islands_[i]);
   } else {
     const auto share = [&](Island* island) {
       const int helpers = island->contacts.size() >= SHARED ? settings_.threads - 1 : 0;
       island->solver.team()->with(helpers, [&] { work(island); });
     };
-    arena_.execute([&] { tbb::parallel_for(0, island_count_, [&](int i) { share(&islands_of_step_[i]); }); });
+    arena_.execute([&] { tbb::parallel_for(0, islands_.count(), [&](int i) { share(&islands_[i]); }); });
   }
 }
 
@@ -333,9 +250,9 @@ void ArticulatedStepper::report(double dt, SolveResult* result) const {
   result->residual = result->creep = 0;
   result->too_fast = false;
   result->iterations = result->lcp_errors = 0;
-  for (int i = 0; i < island_count_; ++i) {
-    const NewtonReport& report = islands_of_step_[i].report;
-    result->too_fast |= !islands_of_step_[i].followed;
+  for (int i = 0; i < islands_.count(); ++i) {
+    const NewtonReport& report = islands_[i].report;
+    result->too_fast |= !islands_[i].followed;
     result->residual = std::max(result->residual, report.contact_residual / dt);
     result->creep = std::max({result->creep, report.joint_creep, report.contact_creep, report.imbalance});
     result->iterations += report.iterations;
@@ -345,7 +262,7 @@ void ArticulatedStepper::report(double dt, SolveResult* result) const {
 void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult* result) {
   rebuild(*scene);
   readEdits(*scene);
-  findIslands(*scene, input.contacts);
+  islands_.find(*scene, forest_, input.contacts);
   geometry::makeRoomFor(input.contacts.size(), &result->contact_forces);
   geometry::makeRoomFor(input.contacts.size(), &result->apparent_work);
   result->contact_forces.assign(input.contacts.size(), Vector3::Zero());
