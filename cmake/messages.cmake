@@ -33,4 +33,5 @@ generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs sensor_msgs std_msgs
 catkin_package(
   INCLUDE_DIRS include
   LIBRARIES blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_reduction blem_sim_dynamics blem_sim_sim
-  CATKIN_DEPENDS message_runtime ${BLEM_SIM_CATKIN_COMPONENTS})
+  CATKIN_DEPENDS message_runtime ${BLEM_SIM_CATKIN_COMPONENTS}
+  DEPENDS EIGEN3)

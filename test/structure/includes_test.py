@@ -21,6 +21,8 @@ PROVIDERS = {
     r"\bstd::(?:multi)?set<": ["set"],
     r"\bstd::(?:string|to_string)\b": ["string"],
     r"\bstd::vector<": ["vector"],
+    r"\bfor \([^;(){}]* : \{": ["initializer_list", "algorithm", "functional", "map", "memory", "set", "string", "vector", "Eigen/", "gtest/",
+                                  "ros/"],
     r"^TEST(?:_F|_P)?\(": ["gtest/gtest.h"],
     r"\bros::(?:NodeHandle|Publisher|Subscriber|ServiceServer)\b": ["ros/"],
     r"\bROS_(?:INFO|WARN|ERROR)": ["ros/console.h"],
@@ -61,3 +63,4 @@ def test_the_rule_sees_what_is_missing():
     assert missing("std::vector<int> a;", {"vector"}) == []
     assert missing("// std::vector<int>", set()) == []
     assert missing("TEST(A, b) {}", {"vector"}) == ["gtest/gtest.h"]
+    assert missing("for (const int n : {1, 2})", {"csignal"}) == ["initializer_list"]

@@ -46,8 +46,7 @@ void StepIslands::fill(const Scene& scene, const Forest& forest, const std::vect
   for (int t = 0; t < static_cast<int>(forest.trees().size()); ++t) ofTree(t).model.trees.push_back(t);
   for (int m = 0; m < static_cast<int>(forest.mimics().size()); ++m)
     ofTree(treeOfNode(forest, forest.mimics()[m].node)).mimics.push_back(m);
-  for (int l = 0; l < static_cast<int>(forest.loops().size()); ++l)
-    ofTree(treeOfNode(forest, forest.loops()[l].child)).loops.push_back(l);
+  for (int l = 0; l < static_cast<int>(forest.loops().size()); ++l) ofTree(treeOfNode(forest, forest.loops()[l].child)).loops.push_back(l);
   for (int i = 0; i < static_cast<int>(contacts.size()); ++i) {
     const ContactConstraint& c = contacts[i];
     if (!isUsable(scene, c) || !isMoved(forest, c)) continue;
