@@ -14,7 +14,17 @@ struct Range {
   double lower, upper;
 
   double length() const { return upper - lower; }
+  bool ends() const { return std::isfinite(length()); }
 };
+
+std::string told(const Range& range) {
+  return range.ends() ? fmt::format("goes from {:.4g} to {:.4g}", range.lower, range.upper) : "moves without end";
+}
+
+/** Whether a way is so little less than the whole range that it need not be told. */
+bool isWhole(const Range& way, const Range& own) {
+  return own.ends() ? way.length() >= (1 - NOTHING) * own.length() : way.lower <= own.lower && way.upper >= own.upper;
+}
 
 /** Range of the leader's positions at which both hold their limits; of length 0 or less: none. */
 Range wayOf(const MimicLeader& leader, const JointLimits& of_leader, const JointLimits& of_follower) {
@@ -24,7 +34,7 @@ Range wayOf(const MimicLeader& leader, const JointLimits& of_leader, const Joint
     return holds ? own : Range{own.lower, own.lower};
   }
   const double a = (of_follower.lower - leader.offset) / leader.multiplier, b = (of_follower.upper - leader.offset) / leader.multiplier;
-  return {std::max(own.lower, std::min(a, b)), std::min(own.upper, std::max(a, b))};
+  return {0 + std::max(own.lower, std::min(a, b)), 0 + std::min(own.upper, std::max(a, b))};  // 0: never -0
 }
 
 }  // namespace
@@ -48,13 +58,14 @@ void bringLimitsTogether(LumpedRobot* robot) {
   for (LumpedJoint& follower : robot->joints) {
     if (!follower.mimic || !follower.moves() || follower.type == JointType::CONTINUOUS) continue;
     const MimicLeader found = mimicLeader(*robot, follower);
-    if (found.joint < 0 || robot->joints[found.joint].type == JointType::CONTINUOUS) continue;
+    if (found.joint < 0) continue;
     LumpedJoint& leader = robot->joints[found.joint];
     const Range own{leader.limits.lower, leader.limits.upper}, way = wayOf(found, leader.limits, follower.limits);
-    if (!std::isfinite(own.length()) || way.length() >= (1 - NOTHING) * own.length()) continue;
-    const std::string follows = fmt::format("joint '{}' follows '{}', which goes from {:.4g} to {:.4g}; its own limits, {:.4g} to {:.4g},",
-                                            follower.name, leader.name, own.lower, own.upper, follower.limits.lower, follower.limits.upper);
-    if (way.length() > NOTHING * own.length()) {
+    if (isWhole(way, own)) continue;
+    const std::string follows = fmt::format("joint '{}' follows '{}', which {}; its own limits, {:.4g} to {:.4g},", follower.name,
+                                            leader.name, told(own), follower.limits.lower, follower.limits.upper);
+    if (way.length() > (own.ends() ? NOTHING * own.length() : 0)) {
+      leader.type = leader.type == JointType::CONTINUOUS ? JointType::REVOLUTE : leader.type;
       leader.limits.lower = way.lower;
       leader.limits.upper = way.upper;
       robot->notes.push_back(fmt::format("{} leave that only {:.4g} to {:.4g}", follows, way.lower, way.upper));

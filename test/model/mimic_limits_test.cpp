@@ -63,9 +63,28 @@ TEST(MimicLimits, ThatLeaveSomeWayBoundTheLeader) {
   EXPECT_NE(robot.notes[0].find("leave that only 0.1 to 0.25"), std::string::npos) << robot.notes[0];
 }
 
-TEST(MimicLimits, OfALeaderWithoutEndStay) {
-  const LumpedRobot robot = hand(handJoint("a", "continuous", 0, 0) + handJoint("b", "revolute", 0, 0.6, mimic("a", -1)));
+TEST(MimicLimits, BoundALeaderThatTurnedWithoutEnd) {
+  const LumpedRobot robot = hand(handJoint("a", "continuous", 0, 0) + handJoint("b", "revolute", 0, 0.6, mimic("a", -1)) +
+                                 handJoint("c", "revolute", -1, 1, mimic("a", 4)));
+  EXPECT_EQ(robot.joints[0].type, JointType::REVOLUTE);
+  expectLimits(robot.joints[0], -0.25, 0);
   expectLimits(robot.joints[1], 0, 0.6);
+  ASSERT_EQ(robot.notes.size(), 2u);
+  EXPECT_NE(robot.notes[0].find("moves without end"), std::string::npos) << robot.notes[0];
+  EXPECT_NE(robot.notes[0].find("leave that only -0.6 to 0"), std::string::npos) << robot.notes[0];
+}
+
+TEST(MimicLimits, OfALeaderWithoutEndThatLeaveNoWayAreNotKept) {
+  const LumpedRobot robot = hand(handJoint("a", "continuous", 0, 0) + handJoint("b", "revolute", 0, 0.6, mimic("a", 0, 1)));
+  EXPECT_EQ(robot.joints[0].type, JointType::CONTINUOUS);
+  expectLimits(robot.joints[0], -ENDLESS_RANGE, ENDLESS_RANGE);
+  expectLimits(robot.joints[1], -ENDLESS_RANGE, ENDLESS_RANGE);
+  ASSERT_EQ(robot.notes.size(), 1u);
+}
+
+TEST(MimicLimits, OfFollowersWithoutEndLeaveTheLeaderFree) {
+  const LumpedRobot robot = hand(handJoint("a", "continuous", 0, 0) + handJoint("b", "continuous", 0, 0, mimic("a", -1)));
+  EXPECT_EQ(robot.joints[0].type, JointType::CONTINUOUS);
   EXPECT_TRUE(robot.notes.empty());
 }
 
