@@ -8,6 +8,7 @@
 
 #include "blem_sim/geometry/roomy.h"
 #include "free_way_books.h"
+#include "island/flight.h"
 #include "island/island_motion.h"
 #include "island/island_readings.h"
 #include "island/island_wrenches.h"
@@ -54,6 +55,7 @@ class ArticulatedStepper : public Stepper {
   NewtonReport solveCorrected(const TermSource& source, const NewtonSettings& newton, const NewtonReport& solved, Island* island);
   NewtonReport solveBounded(const TermSource& source, Island* island);
   void reckonWork(bool leaps, Island* island);
+  bool solveOnce(const TermSource& source, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
   template <typename Work>
@@ -174,15 +176,25 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
   });
 }
 
-void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
+bool ArticulatedStepper::solveOnce(const TermSource& source, Island* island) {
   IslandModel& model = island->model;
-  const TermSource source{scene, forest_, motion_, input, settings_, memory_};
   forTrees(model, island->solver.team(), [&](int tree) { setFreeMomentum(ahead(source, *island, tree), &motion_, &space_); });
   makeTerms(source, island);
-  model.up = -scene.gravity();
-  addEfforts(input, *island->solver.terms(), &space_);
+  model.up = -source.scene.gravity();
+  addEfforts(source.input, *island->solver.terms(), &space_);
   const bool leaps = leap(source, island);
   island->report = solveBounded(source, island);
+  return leaps;
+}
+
+void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
+  const TermSource source{scene, forest_, motion_, input, settings_, memory_};
+  const bool flies = setOutInFlight(source, *island, &motion_);
+  bool leaps = solveOnce(source, island);
+  if (flies && hasLanded(*island, forest_, motion_)) {
+    breakOffFlight(forest_, island->model.trees, &motion_);
+    leaps = solveOnce(source, island);
+  }
   reckonWork(leaps, island);
   if (leaps) island->impacts.addTo(island->solver.terms());
 }
@@ -201,6 +213,7 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   bookBeforeWay(solved, motion_, &space_, result);
   advanceIsland(solved, way_, &motion_, &space_);
   bookAfterWay(solved, motion_, result);
+  endFlight(solved, input.of_step, &motion_, result);
   island->impacts.takeFrom(forest_, model.trees, &motion_.change);
 }
 
@@ -275,9 +288,11 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
   // Nothing was changed yet: a step that broke down leaves everything as it was.
   result->finite = (space_.velocity.array().abs() < FASTEST).all();
-  if (!result->finite) return;
-  const bool fast = std::find(motion_.pace.begin(), motion_.pace.end(), Pace::FAST) != motion_.pace.end();
-  result->free_ways.assign(fast ? scene->bodies().size() : 0, Vector3::Zero());
+  if (!result->finite) {
+    for (int i = 0; i < islands_.count(); ++i) breakOffFlight(forest_, islands_[i].model.trees, &motion_);
+    return;
+  }
+  result->free_ways.assign(hasFreeWays(motion_) ? scene->bodies().size() : 0, Vector3::Zero());
   forEachIsland([&](Island* island) { finishIsland(*scene, input, island, result); });
   report(input.dt, result);
   remember(input, *result);

@@ -31,6 +31,12 @@ void addFreeWork(const SolvedIsland& island, const ForestMotion& motion, double 
 
 }  // namespace
 
+bool hasFreeWays(const ForestMotion& motion) {
+  for (std::size_t tree = 0; tree < motion.pace.size(); ++tree)
+    if (motion.pace[tree] == Pace::FAST || motion.lead[tree].any()) return true;
+  return false;
+}
+
 // Debts of the last step are paid along the mean velocity.
 void bookBeforeWay(const SolvedIsland& island, const ForestMotion& motion, SolverSpace* space, SolveResult* result) {
   for (const int tree : island.model.trees)

@@ -7,6 +7,9 @@
 
 namespace blem_sim::dynamics {
 
+/** Whether any tree goes beside the way of its mean velocity. */
+bool hasFreeWays(const ForestMotion& motion);
+
 /** First part of the result's free_ways, free_work and free_efforts, which were set to zero. After the solve, before the island's trees
  * move. */
 void bookBeforeWay(const SolvedIsland& island, const ForestMotion& motion, SolverSpace* space, SolveResult* result);

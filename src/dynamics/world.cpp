@@ -27,7 +27,7 @@ BLEM_SIM_LANES bool finite(const std::vector<BodyBits>& bodies) {
 }
 
 bool isSound(const Scene& scene, const StepInput& input, const std::vector<BodyBits>& bodies) {
-  if (!(input.dt > 0) || !std::isfinite(input.dt)) return false;
+  if (!(input.dt > 0) || !std::isfinite(input.dt) || !std::isfinite(input.of_step)) return false;
   for (const ContactConstraint& c : input.contacts)
     if (!isSound(c)) return false;
   for (const JointDrive& d : input.drives)
@@ -145,10 +145,11 @@ void World::applyWrench(int body, const Wrench& wrench, const Vector3& point) {
   pending.torque += wrench.torque + (point - impl_->scene.com(body)).cross(wrench.force);
 }
 
-const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives) {
+const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives,
+                               double of_step) {
   assert(static_cast<int>(drives.size()) == jointCount());
   Impl& impl = *impl_;
-  const StepInput input{dt, contacts, drives};
+  const StepInput input{dt, contacts, drives, of_step};
   impl.joints_known = false;
   impl.scene.bits(&impl.start);
   impl.result.finite = impl.advance(input);

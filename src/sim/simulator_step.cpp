@@ -131,7 +131,7 @@ std::optional<MadeSolve> Simulator::Impl::solve(const SolverContacts& contacts, 
   const std::vector<BodyLoad>& loads = loadsNow();
   for (const BodyLoad& load : loads) world_.world.applyWrench(load.body, load.wrench, bodies_[load.body].X_WB * load.p_B);
   energy_balance_.setLoads(loads);
-  const dynamics::SolveResult& result = world_.world.step(substepLength(), contacts.constraints, drives);
+  const dynamics::SolveResult& result = world_.world.step(substepLength(), contacts.constraints, drives, config_.time_step);
   if (result.finite) world_.bodyStates(&bodies_);
   if (result.finite && bodiesAreFinite())
     return MadeSolve{at_hand_, contacts, drives, result, bodies_before_substep_, bodies_, substepLength()};

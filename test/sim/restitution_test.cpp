@@ -68,6 +68,29 @@ TEST_P(SphereCradle, KeepsItsEnergyAndAsManyLeaveAsCame) {
 
 INSTANTIATE_TEST_SUITE_P(Gaps, SphereCradle, ::testing::Values(0, 1e-5, 1e-4, 1e-3));
 
+// Steps near the ground are divided: flight and bounces go through parts of changing lengths.
+TEST(BouncesInDividedSteps, ComeBackUp) {
+  for (const double time_step : {1e-3, 2e-3, 4e-3})
+    for (const double height : {0.1, 1.0, 3.0}) {
+      SimulationConfig config;
+      config.time_step = time_step;
+      config.environments = {ground()};
+      config.contact.surface.restitution = 1;
+      config.contact.surface.friction = 0;
+      config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.0525 + height})};
+      Simulator simulator(config, model::UriResolver());
+      const double fall = std::sqrt(2 * height / G);
+      double highest = 0, out_of_nothing = 0;
+      for (int i = 0; i < std::lround(6.3 * fall / time_step); ++i) {
+        const StepReport& report = simulator.step();
+        out_of_nothing = std::max(out_of_nothing, report.energy_out_of_nothing);
+        highest = i * time_step < 5 * fall ? 0 : std::max(highest, report.bodies[0].X_WB.translation().z() - 0.0525);
+      }
+      EXPECT_NEAR(highest / height, 1, 2e-5 + 0.125 * G * time_step * time_step / height) << time_step << " s, " << height << " m";
+      EXPECT_LT(out_of_nothing, 1e-9) << time_step << " s, " << height << " m";
+    }
+}
+
 // Bounces of meshes, whose contacts come and go.
 TEST(BouncingMeshes, NeverGain) {
   for (const double restitution : {0.5, 0.8, 1.0}) {

@@ -63,8 +63,13 @@ class World {
   /** Adds an outside wrench for the next step only: force [N] and torque [N m] in world axes, at a point of the world. */
   void applyWrench(int body, const Wrench& wrench, const Vector3& point);
 
-  /** Advances by dt [s] > 0. @param drives one per joint slot. With numbers that are none or out of range the result is not finite. */
-  const SolveResult& step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives);
+  /**
+   * Advances by dt [s] > 0. With numbers that are none or out of range the result is not finite.
+   * @param drives one per joint slot @param of_step [s] step of which dt is a part, by half of which velocities stand before their poses in
+   * flight, for `articulated`; less than dt: dt
+   */
+  const SolveResult& step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives,
+                          double of_step = 0);
 
   double kineticEnergy() const;    ///< [J]
   double potentialEnergy() const;  ///< [J] against gravity, zero at the origin

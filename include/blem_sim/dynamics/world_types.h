@@ -115,7 +115,8 @@ struct SolveResult {
   std::vector<double> apparent_work;    ///< [J] per contact: apparent work, at most, of departures and slips that loads end within the
                                         ///< step, and of bent paths; empty where a stepper does not know it
   std::vector<Vector3> free_ways;       ///< [m] per body: by how much its centre of mass went beside the way of the mean velocity over what
-                                        ///< forces did to it, where a tree was followed on its free way; empty if none was
+                                        ///< forces did to it, where a tree was followed on its free way, or flew through a part of a
+                                        ///< step; empty if none was
   std::vector<double> free_work;        ///< [J] per joint: what it took to keep its velocity on a free way, which the next step pays, less
                                   ///< what this one paid of the last; what its effort did beside its mean velocity's way; empty: none known
   double residual = 0;    ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it

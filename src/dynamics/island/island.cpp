@@ -7,6 +7,7 @@ void makeTerms(const TermSource& source, Island* island) {
   IslandModel& model = island->model;
   IslandTerms& terms = *island->solver.terms();
   terms.clear();
+  model.clearTies();
   for (const int tree : model.trees) {
     for (int i = forest.trees()[tree].first_node; i < forest.trees()[tree].node_end; ++i)
       if (forest.nodes()[i].dofs == 1) terms.joints.push_back(jointTerm(source, i));

@@ -20,6 +20,10 @@ void IslandTerms::clear() {
 
 void IslandModel::clear() {
   trees.clear();
+  clearTies();
+}
+
+void IslandModel::clearTies() {
   joints = 0;
   pairs.clear();
   loop_pairs.clear();

@@ -38,6 +38,8 @@ struct IslandModel {
   double mass = 0;               ///< [kg] of all trees
 
   void clear();
+  /** Leaves the trees alone. */
+  void clearTies();
   int treeCount() const { return static_cast<int>(trees.size()); }
   /** Whether two branches or two trees are tied, so that the Hessian couples what M does not. */
   bool isTied() const;

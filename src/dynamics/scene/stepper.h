@@ -14,6 +14,7 @@ struct StepInput {
   double dt;  ///< [s]
   const std::vector<ContactConstraint>& contacts;
   const std::vector<JointDrive>& drives;  ///< one per joint slot
+  double of_step = 0;                     ///< [s] step of which dt is a part, if it is longer
 };
 
 /**

@@ -29,6 +29,7 @@ void ForestMotion::resize(const Forest& forest) {
   momentum.assign(trees, Vector6::Zero());
   tree_com.resize(trees);
   pace.assign(trees, Pace::SLOW);
+  lead.assign(trees, Lead());
 }
 
 BLEM_SIM_LANES void placeBodies(const Forest& forest, int tree, ForestMotion* motion) {

@@ -14,6 +14,15 @@ enum class Pace : char {
   TOO_FAST  ///< products are left out; the tree is tied to others and cannot be followed, but gains no energy
 };
 
+/** Step of the velocity of a free tree in flight, from half a step to half a part of one before its pose (island/flight.h). */
+struct Lead {
+  Vector3 velocity = Vector3::Zero();         ///< [m/s] which is added until the end of its way
+  Vector3 velocity_before = Vector3::Zero();  ///< [m/s] of its root, without it
+  Vector6 momentum_before = Vector6::Zero();  ///< of the tree
+
+  bool any() const { return !velocity.isZero(0); }
+};
+
 /**
  * Poses and velocities of bodies. World axes; everything of a tree about its reference point, which stands still during a step: a
  * free root's centre of mass at its start, else the root's origin. The six velocities of a free root are its spin and the velocity of its
@@ -44,6 +53,7 @@ struct ForestMotion {
   std::vector<Vector6> momentum;  ///< of a free tree, carried from step to step
   std::vector<Vector3> tree_com;  ///< about the reference point, at the start of the step
   std::vector<Pace> pace;         ///< in this step
+  std::vector<Lead> lead;         ///< in this step
 
   // Work space, per node.
   std::vector<Vector6> drift;  ///< acceleration that goes with node_twist and constant velocities of the dofs, of computeProducts; of a
