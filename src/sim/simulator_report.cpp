@@ -26,7 +26,7 @@ void Simulator::Impl::recordSolve(const dynamics::SolveResult& solved) {
 }
 
 void Simulator::Impl::recordEnergy(const MadeSolve& made) {
-  const EnergyGain gain = energy_balance_.addSolve(world_.world, made);
+  const EnergyGain gain = energy_balance_.addSolve(world_.world, made, found_.manifolds);
   report_.energy_gained += gain.total;
   report_.energy_out_of_nothing += gain.out_of_nothing;
   if (gain.beyond_bound) report_.status |= ENERGY_GAINED;

@@ -159,16 +159,33 @@ Vector3 rollsOnBy(const ContactConstraint& c, const Vector3& normal, const Vecto
   return as_ball + radius * spin_about_axis * spin.cross(axis.cross(across.normalized()));
 }
 
-// A sticking contact shall not have moved at the end of the step, along paths that bend. One that rolls goes on over both bodies: where
-// they spin about its normal, it does not take part in the bend of a point that it leaves.
-Vector3 bendAt(const TermSource& s, const BodyPair& pair, const ContactTerm& contact, const ContactConstraint& c) {
+/** [m/s^2] The same along the normal: curved surfaces that roll do not part as the points do that touch. */
+double partsBy(const ContactConstraint& c, const Vector3& normal, const Vector3& spin) {
+  const double as_ball = -c.rolling * (spin - spin.dot(normal) * normal).squaredNorm();
+  if (c.rim.isZero(0)) return as_ball;
+  const Vector3 axis = c.rim.normalized(), level = axis - normal.dot(axis) * normal;
+  const double about_level = spin.dot(level) / level.norm();
+  return as_ball - c.rim.norm() / level.norm() * about_level * about_level;
+}
+
+/** [m/s] Half a step of a contact's acceleration along paths that bend. */
+struct Bend {
+  Vector3 across;
+  double along;  ///< its normal
+};
+
+// A sticking contact shall not have moved at the end of the step, along paths that bend, and a spring follows the depth there. One that
+// rolls goes on over both bodies: where they spin, it does not take part in the bend of a point that it leaves.
+Bend bendAt(const TermSource& s, const BodyPair& pair, const ContactTerm& contact, const ContactConstraint& c) {
   Vector3 drift = pairDrift(s, pair, contact.point).point;
+  double parting = drift.dot(contact.normal);
   if (c.rolling > 0 || !c.rim.isZero(0)) {
     Vector3 spin = angular(s.motion.node_twist[pair.a]);
     if (pair.b >= 0) spin -= angular(s.motion.node_twist[pair.b]);
     drift += rollsOnBy(c, contact.normal, spin);
+    parting += partsBy(c, contact.normal, spin);
   }
-  return 0.5 * s.input.dt * (drift - drift.dot(contact.normal) * contact.normal);
+  return {0.5 * s.input.dt * (drift - drift.dot(contact.normal) * contact.normal), 0.5 * s.input.dt * parting};
 }
 
 // Proximal weights and points of a loop's rows. A direction in which nothing can move, such as out of a planar loop's plane, needs no row.
@@ -206,10 +223,12 @@ ContactTerm contactTerm(const TermSource& s, const ContactConstraint& c, const B
   ContactTerm term;
   term.point = c.point - s.motion.reference[s.forest.nodes()[pair.a].tree];
   term.normal = termSign(c) * c.normal_BA;
-  term.bend = bendAt(s, pair, term, c);
+  const Bend bend = bendAt(s, pair, term, c);
+  term.bend = bend.across;
   term.friction = c.friction;
   term.target = std::abs(c.depth) > NO_GAP ? row.speed : 0;
   term.compliance = row.compliance / s.input.dt;
+  if (term.compliance > 0) term.target -= bend.along;
   if (record) {
     term.previous = termSign(c) * s.input.dt * record->force;
     term.slip = record->slip;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/contact/collider_pairs.h"
+
 namespace blem_sim::sim {
 namespace {
 
@@ -17,15 +19,40 @@ double correctionSpeed(const dynamics::ContactConstraint& c, bool recovers, doub
   return recovers && c.damping > 0 ? c.stiffness * c.depth / c.damping : 0;
 }
 
+/** Depth of a spring [m], and speed [m/s] at which it parts. */
+struct SpringState {
+  double depth, speed;
+
+  /** [m] half a step before */
+  double depthBefore(double dt) const { return depth + 0.5 * dt * speed; }
+};
+
 /**
  * [J] Apparent work of a spring that turns round within a step of dt: its impulse follows from depth and speed at the end, and is booked
  * along the mean velocity. Of one that obeys its law it is all that is booked, less than 0 unless it turns.
- * @param before,after [m/s] speeds apart
  */
-double turnWork(const dynamics::ContactConstraint& spring, double before, double after, double dt) {
-  const double way = 0.5 * dt * (before + after);
-  return std::max(0.0, -way * (0.25 * spring.stiffness * dt * (before + 3 * after) + spring.damping * after));
+double turnWork(const dynamics::ContactConstraint& spring, const SpringState& start, const SpringState& end, double dt) {
+  const double booked = start.depthBefore(dt) - end.depthBefore(dt), parted = start.depth - end.depth;
+  return std::max(0.0, -booked * (spring.stiffness * (parted + 0.5 * dt * start.speed - 0.5 * booked) + spring.damping * parted / dt));
 }
+
+/** Velocity [m/s] of a body's point, or of the world's. */
+Vector3 velocityAt(const dynamics::World& world, const std::vector<dynamics::BodyState>& states, int body, const Vector3& point) {
+  if (body == dynamics::WORLD_BODY) return Vector3::Zero();
+  const dynamics::BodyState& state = states[body];
+  return state.v_WCom + state.w_WB.cross(point - state.X_WB * world.bodySpec(body).inertial.com);
+}
+
+/** The contact of a constraint among those of another state; null if it is not there. */
+const contact::Contact* findContact(const std::vector<contact::ContactManifold>& manifolds, const SolvedContact& solved) {
+  const contact::ContactManifold* manifold = contact::findPair(manifolds, solved.collider_a, solved.collider_b);
+  if (!manifold) return nullptr;
+  const auto found = std::find_if(manifold->contacts.begin(), manifold->contacts.end(),
+                                  [&](const contact::Contact& contact) { return contact.id == solved.id; });
+  return found == manifold->contacts.end() ? nullptr : &*found;
+}
+
+bool rolls(const dynamics::ContactConstraint& contact) { return contact.rolling > 0 || !contact.rim.isZero(0); }
 
 /** Displacements of points of bodies; contacts of one body follow on each other. */
 class Displacements {
@@ -46,6 +73,35 @@ class Displacements {
   Pose X_BW_before_;
 };
 
+/**
+ * Springs at the end of a solve. A contact that rolls goes on over both bodies, so it is found again; others stand on
+ * points of both.
+ */
+class SpringEnds {
+ public:
+  SpringEnds(const dynamics::World& world, const MadeSolve& made, const std::vector<contact::ContactManifold>& end)
+      : world_(world), made_(made), end_(end), of_a_(made.before, made.after), of_b_(made.before, made.after) {}
+
+  /** @param i constraint of the solve */
+  SpringState of(std::size_t i) {
+    const dynamics::ContactConstraint& c = made_.contacts.constraints[i];
+    const contact::Contact* now = rolls(c) ? findContact(end_, made_.contacts.solved[i]) : nullptr;
+    if (now) return {now->depth, now->normal_BA.dot(velocityApart(c, now->point, now->point))};
+    const Vector3 a = of_a_.of(c.point, c.body_a), b = of_b_.of(c.point, c.body_b);
+    return {c.depth - c.normal_BA.dot(a - b), c.normal_BA.dot(velocityApart(c, c.point + a, c.point + b))};
+  }
+
+ private:
+  Vector3 velocityApart(const dynamics::ContactConstraint& c, const Vector3& p_a, const Vector3& p_b) const {
+    return velocityAt(world_, made_.after, c.body_a, p_a) - velocityAt(world_, made_.after, c.body_b, p_b);
+  }
+
+  const dynamics::World& world_;
+  const MadeSolve& made_;
+  const std::vector<contact::ContactManifold>& end_;
+  Displacements of_a_, of_b_;
+};
+
 }  // namespace
 
 void EnergyBalance::start(const dynamics::World& world) {
@@ -53,12 +109,12 @@ void EnergyBalance::start(const dynamics::World& world) {
   for (int joint = 0; joint < world.jointCount(); ++joint) joints_[joint] = world.jointState(joint);
 }
 
-EnergyGain EnergyBalance::addSolve(const dynamics::World& world, const MadeSolve& made) {
+EnergyGain EnergyBalance::addSolve(const dynamics::World& world, const MadeSolve& made, const std::vector<contact::ContactManifold>& end) {
   tie(world, made);
   bookBodies(world, made);
   bookLoads(world, made.dt, made.before, made.after);
   bookJoints(world, made.dt, made.result);
-  bookSprings(made);
+  bookSprings(world, made, end);
   bookContacts(made);
   EnergyGain gain;
   for (const Book& book : books_) {
@@ -146,20 +202,21 @@ void EnergyBalance::bookJoints(const dynamics::World& world, double dt, const dy
 }
 
 // Books the energy of springs; those that part crossed meshes hold none. Depths are those of half a step before: their change is the way of
-// the mean velocity, as for weights. Without this, what sinks into a spring out of rest would gain the half of its weight's work.
-void EnergyBalance::bookSprings(const MadeSolve& made) {
-  Displacements a(made.before, made.after), b(made.before, made.after);
+// the mean velocity, as for weights. Without this, what sinks into a spring out of rest would gain the half of its weight's work. One whose
+// damper holds all of its push stores nothing.
+void EnergyBalance::bookSprings(const dynamics::World& world, const MadeSolve& made, const std::vector<contact::ContactManifold>& end) {
+  SpringEnds ends(world, made, end);
   for (std::size_t i = 0; i < made.contacts.constraints.size(); ++i) {
     const dynamics::ContactConstraint& contact = made.contacts.constraints[i];
     if (!isSpring(contact) || made.contacts.solved[i].recovers) continue;
-    const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
-    const double old_speed = normalSpeed(contact, made.before), speed = normalSpeed(contact, made.after);
-    const double old_depth = std::max(0.0, contact.depth + 0.5 * made.dt * old_speed);
-    const double depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart) + 0.5 * made.dt * speed);
+    const SpringState start{contact.depth, normalSpeed(contact, made.before)}, ended = ends.of(i);
+    const double old_depth = std::max(0.0, start.depthBefore(made.dt)), depth = std::max(0.0, ended.depthBefore(made.dt));
     Book& book = bookOf(contact);
-    book.rise += 0.5 * contact.stiffness * (square(depth) - square(old_depth));
+    const double stored = 0.5 * contact.stiffness * (square(depth) - square(old_depth));
+    const bool pushes = !made.result.contact_forces[i].isZero(0);
+    book.rise += pushes ? stored : std::min(0.0, stored);
     book.moved += 0.5 * contact.stiffness * std::max(square(depth), square(old_depth));
-    if (!made.result.contact_forces[i].isZero(0)) book.on_purpose += turnWork(contact, old_speed, speed, made.dt);
+    if (pushes) book.on_purpose += turnWork(contact, start, ended, made.dt);
   }
 }
 

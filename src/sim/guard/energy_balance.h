@@ -40,10 +40,11 @@ class EnergyBalance {
   void setLoads(const std::vector<BodyLoad>& loads) { loads_ = loads; }
   /**
    * Books a solve that was accepted.
+   * @param end contacts that were found at its end
    * @return never below 0. An impact's energy that is still to bounce is held back from one solve to the next: the share that the largest
    * restitution gives back of the energy that the solve before took
    */
-  EnergyGain addSolve(const dynamics::World& world, const MadeSolve& made);
+  EnergyGain addSolve(const dynamics::World& world, const MadeSolve& made, const std::vector<contact::ContactManifold>& end);
 
   /** Forgets the energy that is held back: no impact is to bounce. */
   void clear() { held_.assign(held_.size(), 0); }
@@ -75,11 +76,11 @@ class EnergyBalance {
   void bookLoads(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
                  const std::vector<dynamics::BodyState>& after);
   void bookJoints(const dynamics::World& world, double dt, const dynamics::SolveResult& result);
-  void bookSprings(const MadeSolve& made);
+  void bookSprings(const dynamics::World& world, const MadeSolve& made, const std::vector<contact::ContactManifold>& end);
   void bookContacts(const MadeSolve& made);
   void holdBack();
   Book& bookOf(const dynamics::ContactConstraint& contact);
-  /** Speed [m/s] of A's point against B's along the normal. */
+  /** Speed [m/s] of A's point against B's along the normal, at the poses of the solve's start. */
   double normalSpeed(const dynamics::ContactConstraint& contact, const std::vector<dynamics::BodyState>& states) const;
 
   dynamics::SolverSettings settings_;

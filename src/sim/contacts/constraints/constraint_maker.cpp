@@ -119,7 +119,7 @@ void ConstraintMaker::addConstraints(const SolveAhead& ahead, const contact::Con
     constraint.damping = contact.weight * surface.damping;
     if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
     made_.constraints.push_back(constraint);
-    made_.solved.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0, recovers});
+    made_.solved.push_back({manifold.a, manifold.b, contact.id, manifold.layer, contact.pierced, 0, recovers});
   }
   made_.reduced += static_cast<int>(manifold.contacts.size());
   if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
@@ -132,7 +132,7 @@ void ConstraintMaker::addStops(const SimulatedWorld& world, const contact::Conta
     constraint.friction = friction;
     constraint.id = stopId(constraint.id);
     made_.constraints.push_back(constraint);
-    made_.solved.push_back({all.a, all.b, all.layer, false, stop, false});
+    made_.solved.push_back({all.a, all.b, contact.id, all.layer, false, stop, false});
   }
 }
 

@@ -20,7 +20,8 @@ std::uint64_t worldContactId(int a, int b, std::uint64_t id);
 /** A contact in the solve: its pair, layer and kind. Goes with the constraint of the same index. */
 struct SolvedContact {
   int collider_a, collider_b;
-  double layer;  ///< [m] rA + rB
+  std::uint64_t id;  ///< of the contact in the pair's manifold
+  double layer;      ///< [m] rA + rB
   bool pierced;
   double stop;    ///< [m] depth at which a layer's stop begins; 0 for other contacts
   bool recovers;  ///< of a pair of FoundContacts::crossings
