@@ -110,6 +110,26 @@ TEST(BodyWays, LinksSwingEachOtherByNoMoreThanIsTold) {
     }
 }
 
+/** The lower link is a rotor about its own axis, which lies along the upper link; its centre of mass is 0 or 1 mm off it. */
+TEST(BodyWays, BalancedRotorsSwingNothing) {
+  for (const double off : {0.0, 1e-3}) {
+    TwoLinks arm(dynamics::JointKind::REVOLUTE, Vector3::UnitX(), 5, 0);
+    geometry::MassProperties rotor = arm.world.world.bodySpec(arm.lower).inertial;
+    rotor.com.y() = off;
+    arm.world.world.setInertial(arm.lower, rotor);
+    BodyWays ways;
+    ways.start(arm.world, arm.bodies, LONG_STEP);
+    const double still = ways.swing(arm.upper);
+    arm.bodies[arm.lower].w_WB += 1000 * Vector3::UnitX();
+    ways.start(arm.world, arm.bodies, LONG_STEP);
+    if (off == 0) {
+      EXPECT_NEAR(ways.swing(arm.upper), still, 1e-12 * still);
+    } else {
+      EXPECT_GT(ways.swing(arm.upper), 1000 * still);
+    }
+  }
+}
+
 TEST(BodyWays, LinkIsLedToAPose) {
   for (const double turn : {0.0, 1e-5, 0.3}) {
     TwoLinks arm(dynamics::JointKind::REVOLUTE, Vector3::UnitY(), 5, 90);

@@ -13,8 +13,10 @@ constexpr double BEARING_GAP = 1e-6;  // [m] largest gap of a contact that bears
 /** Largest change [m/s] of a contact's velocity from that at hand to that of the pair's way. The solve begins with the slip at hand: where
  * the gap spares less than friction makes of that change, contacts that are not met would push. */
 double changeOf(const SolveAhead& ahead, const WayOfPair& way) {
-  const BodyTwist a = twistOf(ahead.world, ahead.bodies, way.a.collider->body),
-                  b = twistOf(ahead.world, ahead.bodies, way.b.collider->body);
+  const auto atHand = [&](const ColliderWay& of) {
+    return surfaceTwist(*of.collider, of.X_WC, twistOf(ahead.world, ahead.bodies, of.collider->body));
+  };
+  const BodyTwist a = atHand(way.a), b = atHand(way.b);
   double largest = 0;
   for (const contact::Contact& contact : way.now.contacts) {
     const Vector3& p = contact.point;
@@ -52,6 +54,7 @@ ColliderWay ContactMeetings::wayOf(const SolveAhead& ahead, int collider) const 
   ColliderWay way{&c, ahead.contacts.watched.motion[collider].X_WC, now.centre, now};
   if (c.body != dynamics::WORLD_BODY && world.models[c.model].kind == ModelKind::OBJECT && !supports_[c.body].touches)
     way.twist.v += ahead.dt * world.world.gravity();
+  way.twist = surfaceTwist(c, way.X_WC, way.twist);
   return way;
 }
 
@@ -64,6 +67,7 @@ ColliderWay ContactMeetings::expectedWayOf(const SolveAhead& ahead, int collider
   const dynamics::BodyState& then = ahead.expected.bodies[c.body];
   way.twist = {now.centre, then.v_WCom, then.w_WB};
   ways_.leadTo(c.body, then.X_WB, &way.twist);
+  way.twist = surfaceTwist(c, way.X_WC, way.twist);
   return way;
 }
 
@@ -101,8 +105,10 @@ bool ContactMeetings::isDoubtful(const SolveAhead& ahead, const contact::Contact
 
 void ContactMeetings::lookAt(const SolveAhead& ahead, std::size_t manifold) {
   WayOfPair way = wayOfPair(ahead, ahead.contacts.manifolds[manifold]);
-  ways_.lead(way.a.collider->body, &way.a.twist);
-  ways_.lead(way.b.collider->body, &way.b.twist);
+  for (ColliderWay* of : {&way.a, &way.b}) {
+    ways_.lead(of->collider->body, &of->twist);
+    of->twist = surfaceTwist(*of->collider, of->X_WC, of->twist);
+  }
   follow(ahead, manifold, &way);
 }
 

@@ -28,6 +28,14 @@ inline BodyTwist withoutSpin(const BodyTwist& twist, const Vector3& p, const Vec
   return {p, twist.at(p), twist.w - twist.w.dot(axis) * axis};
 }
 
+/** Motion of a collider's surface as it is seen from outside: the spin of a cylinder about its axis leaves it where it is.
+ *  @param twist of its body */
+inline BodyTwist surfaceTwist(const contact::Collider& collider, const Pose& X_WC, const BodyTwist& twist) {
+  if (!collider.geometry || !collider.geometry->cylinder()) return twist;
+  const Pose X_WK = X_WC * collider.geometry->cylinder()->X_GK;
+  return withoutSpin(twist, X_WK.translation(), X_WK.linear().col(2));
+}
+
 /** Twist of a body about its centre of mass; none of the world's. @param bodies their states, by slot */
 inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, int body) {
   if (body == dynamics::WORLD_BODY) return {};

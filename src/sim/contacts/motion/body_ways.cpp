@@ -7,7 +7,15 @@ namespace blem_sim::sim {
 namespace {
 
 constexpr int NO_JOINT = dynamics::WORLD_BODY - 1;
+constexpr double BALANCED = 1e-6;  // [m] of a rotor's centre of mass off its axis; of its moment of inertia
 constexpr double STRAIGHT = 1e-6;  // [rad] turn of a screw whose bend is none
+
+/** Whether the child's spin about a hinge moves no mass and turns no moment. The axis goes through the child's origin. */
+bool isBalanced(const dynamics::JointSpec& hinge, const geometry::MassProperties& child) {
+  const Vector3 moment = child.inertia * hinge.axis;
+  return hinge.kind == dynamics::JointKind::REVOLUTE && child.com.cross(hinge.axis).norm() < BALANCED &&
+         moment.cross(hinge.axis).norm() < BALANCED * moment.norm();
+}
 
 /** Motion of poses of the world for dt [s] by a constant screw, whose point at p moves at v [m/s]. */
 Pose screwMotion(const Vector3& p, const Vector3& v, const Vector3& w, double dt) {
@@ -47,23 +55,46 @@ void BodyWays::start(const SimulatedWorld& world, const std::vector<dynamics::Bo
 void BodyWays::findParents() {
   parents_.assign(bodies_->size(), NO_JOINT);
   swings_.assign(bodies_->size(), 0);
+  rotors_.assign(bodies_->size(), Vector3::Zero());
   for (const RobotInfo& robot : world_->robots) {
     const ModelInfo& model = world_->models[robot.model];
     if (!model.alive) continue;
-    const double swing = swingOf(model);
-    for (const int body : model.bodies) swings_[body] = swing;
     for (const int joint : robot.world_joints) {
       if (joint < 0) continue;
       const dynamics::JointSpec& spec = world_->world.jointSpec(joint);
       if (parents_[spec.child] == NO_JOINT) parents_[spec.child] = spec.parent;
     }
+    findRotors(robot);
+    const double swing = swingOf(model);
+    for (const int body : model.bodies) swings_[body] = swing;
   }
+}
+
+void BodyWays::findRotors(const RobotInfo& robot) {
+  for (const int joint : robot.world_joints) {
+    if (joint < 0) continue;
+    const dynamics::JointSpec& spec = world_->world.jointSpec(joint);
+    if (isBalanced(spec, world_->world.bodySpec(spec.child).inertial)) rotors_[spec.child] = spec.axis;
+  }
+  for (const int joint : robot.world_joints)
+    if (joint >= 0 && world_->world.jointSpec(joint).parent != dynamics::WORLD_BODY)
+      rotors_[world_->world.jointSpec(joint).parent].setZero();
+}
+
+/** [rad/s] Turn of a link that swings its tree. */
+double BodyWays::turnOf(int body) const {
+  const Vector3& w = (*bodies_)[body].w_WB;
+  const int parent = parents_[body];
+  if (parent == NO_JOINT || rotors_[body].isZero(0)) return w.norm();
+  const Vector3 axis = (*bodies_)[body].X_WB.linear() * rotors_[body];
+  const Vector3 spin = parent == dynamics::WORLD_BODY ? w : Vector3(w - (*bodies_)[parent].w_WB);
+  return (w - spin.dot(axis) * axis).norm();
 }
 
 double BodyWays::swingOf(const ModelInfo& model) const {
   double turn = 0, size = 0;
   for (const int body : model.bodies) {
-    turn = std::max(turn, (*bodies_)[body].w_WB.norm());
+    turn = std::max(turn, turnOf(body));
     size = std::max(size, 2 * (twist(body).centre - twist(model.bodies[0]).centre).norm());
   }
   return dt_ * turn * turn * size;

@@ -21,13 +21,16 @@ class BodyWays {
   void leadTo(int body, const Pose& X_WB, BodyTwist* way) const;
   /**
    * Speed [m/s] by which links of a tree swing each other within the solve, beside turning: what a body of the tree's size would give its
-   * ends if it turned as fast as the fastest link. 0 for a body on no joint.
+   * ends if it turned as fast as the fastest link. The spin of a rotor that is balanced about its joint's axis, and carries nothing, swings
+   * none. 0 for a body on no joint.
    */
   double swing(int body) const { return body == dynamics::WORLD_BODY ? 0 : swings_[body]; }
 
  private:
   bool isOnJoint(int body) const;
   void findParents();
+  void findRotors(const RobotInfo& robot);
+  double turnOf(int body) const;
   double swingOf(const ModelInfo& model) const;
   Pose ahead(int body) const;
   BodyTwist twist(int body) const;
@@ -35,8 +38,9 @@ class BodyWays {
   const SimulatedWorld* world_ = nullptr;
   const std::vector<dynamics::BodyState>* bodies_ = nullptr;
   double dt_ = 0;
-  std::vector<int> parents_;    // by body
-  std::vector<double> swings_;  // by body
+  std::vector<int> parents_;     // by body
+  std::vector<double> swings_;   // by body
+  std::vector<Vector3> rotors_;  // by body: axis, in its frame, of what is balanced about its joint's and carries nothing; else zero
 };
 
 }  // namespace blem_sim::sim

@@ -16,14 +16,11 @@ Box boxOf(const contact::Collider& collider, const Pose& X_WC, double margin) {
   return Box(centre - half, centre + half);
 }
 
-/** Motion of a collider's surface as it is seen from outside: the spin of a cylinder about its axis leaves it where it is. */
-BodyTwist surfaceTwist(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
-                       const std::vector<contact::ColliderMotion>& motion, int collider) {
+/** Motion of a collider's surface. @param motion poses of the colliders */
+BodyTwist twistOfCollider(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                          const std::vector<contact::ColliderMotion>& motion, int collider) {
   const contact::Collider& seen = world.colliders[collider];
-  const BodyTwist twist = twistOf(world, bodies, seen.body);
-  if (!seen.geometry->cylinder()) return twist;
-  const Pose X_WK = motion[collider].X_WC * seen.geometry->cylinder()->X_GK;
-  return withoutSpin(twist, X_WK.translation(), X_WK.linear().col(2));
+  return surfaceTwist(seen, motion[collider].X_WC, twistOf(world, bodies, seen.body));
 }
 
 }  // namespace
@@ -35,7 +32,7 @@ double meetingSpeedBound(const SimulatedWorld& world, const std::vector<dynamics
   const bool from_a = !a.geometry->isHalfSpace();
   const contact::Collider& bounded = from_a ? a : b;
   if (bounded.geometry->isHalfSpace()) return std::numeric_limits<double>::infinity();
-  const BodyTwist twist_a = surfaceTwist(world, bodies, motion, pair.a), twist_b = surfaceTwist(world, bodies, motion, pair.b);
+  const BodyTwist twist_a = twistOfCollider(world, bodies, motion, pair.a), twist_b = twistOfCollider(world, bodies, motion, pair.b);
   const Box box = boxOf(bounded, motion[from_a ? pair.a : pair.b].X_WC, a.radius + b.radius + pair.margin);
   const Vector3 centre = box.center();
   return (twist_a.at(centre) - twist_b.at(centre)).norm() + (twist_a.w - twist_b.w).norm() * 0.5 * box.diagonal().norm();
@@ -52,7 +49,7 @@ double meetingSpeed(const SimulatedWorld& world, const std::vector<dynamics::Bod
   Vector3 towards = Vector3::Zero();  // the half-space's way in for A's points
   if (b.geometry->isHalfSpace()) towards = -(X_WB.linear() * b.geometry->planeNormal());
   if (a.geometry->isHalfSpace()) towards = X_WA.linear() * a.geometry->planeNormal();
-  const BodyTwist twist_a = surfaceTwist(world, bodies, motion, pair.a), twist_b = surfaceTwist(world, bodies, motion, pair.b);
+  const BodyTwist twist_a = twistOfCollider(world, bodies, motion, pair.a), twist_b = twistOfCollider(world, bodies, motion, pair.b);
   double fastest = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const Vector3 p = common.corner(static_cast<Box::CornerType>(corner)), v = twist_a.at(p) - twist_b.at(p);

@@ -37,8 +37,7 @@ double armOf(const contact::Collider& collider, const Vector3& com) {
 double surfaceSpeed(const contact::Collider& collider, const Pose& X_WC, const BodyTwist& twist, double arm) {
   const double speed = twist.v.norm() + twist.w.norm() * arm;
   if (!collider.geometry || !collider.geometry->cylinder()) return speed;
-  const Pose X_WK = X_WC * collider.geometry->cylinder()->X_GK;
-  const BodyTwist seen = withoutSpin(twist, X_WK.translation(), X_WK.linear().col(2));
+  const BodyTwist seen = surfaceTwist(collider, X_WC, twist);
   return std::min(speed, seen.v.norm() + seen.w.norm() * 0.5 * collider.geometry->bounds().diagonal().norm());
 }
 
