@@ -4,6 +4,7 @@
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "messages/joint_messages.h"
@@ -35,16 +36,32 @@ bool RobotCommands::takesItsOwn(const sim::RobotInfo& robot) const {
   return true;
 }
 
+bool RobotCommands::isForAnother(const sim::RobotInfo& robot, const std::vector<std::string>& joints) const {
+  const auto has_all = [&](const sim::RobotInfo& other) {
+    return std::all_of(joints.begin(), joints.end(), [&](const std::string& joint) { return hasJoint(other, joint); });
+  };
+  const std::vector<sim::RobotInfo>& robots = simulator_->robots();
+  return !joints.empty() && std::any_of(robots.begin(), robots.end(), [&](const sim::RobotInfo& other) {
+    return other.name != robot.name && subscribers_.count(other.name) > 0 && shareNamespace(other, robot) && has_all(other);
+  });
+}
+
 std::vector<ros::Subscriber> RobotCommands::subscribe(const sim::RobotInfo& info) {
   const ros::NodeHandle robot_node(node_, info.name_space);
   const auto robot = [simulator = simulator_, name = info.name] { return simulator->robotIndex(name); };
+  const auto is_mine = [this, robot](const std::vector<std::string>& joints) {
+    return !isForAnother(simulator_->robots()[robot()], joints);
+  };
   std::vector<ros::Subscriber> subscribers;
-  subscribers.push_back(subscribeCounted<trajectory_msgs::JointTrajectory>(
-      robot_node, "joint_trajectory", "trajectory refused", refusals_,
-      [this, robot](const auto& message) { simulator_->commandTrajectory(robot(), fromMessage(message)); }));
+  subscribers.push_back(subscribeCounted<trajectory_msgs::JointTrajectory>(robot_node, "joint_trajectory", "trajectory refused", refusals_,
+                                                                           [this, robot, is_mine](const auto& message) {
+                                                                             if (is_mine(message.joint_names))
+                                                                               simulator_->commandTrajectory(robot(), fromMessage(message));
+                                                                           }));
   subscribers.push_back(subscribeCounted<sensor_msgs::JointState>(
-      robot_node, "joint_command", "command refused", refusals_,
-      [this, robot](const auto& message) { stamped_->give(robot(), commandOf(message), message.header.stamp.toSec()); }));
+      robot_node, "joint_command", "command refused", refusals_, [this, robot, is_mine](const auto& message) {
+        if (is_mine(message.name)) stamped_->give(robot(), commandOf(message), message.header.stamp.toSec());
+      }));
   return subscribers;
 }
 

@@ -86,7 +86,7 @@ struct SimulationNode::Impl {
   void addPublishers() {
     // The clock goes last: a node that wakes by it finds the messages of that time on their way.
     loop.add(std::make_unique<JointStatePublisher>(node, simulator, loop.sender()));
-    loop.add(std::make_unique<TransformPublisher>(node, simulator, loop.sender()));
+    loop.add(std::make_unique<TransformPublisher>(node, &loop));
     loop.add(std::make_unique<OdometryPublisher>(node, simulator, loop.sender()));
     loop.add(std::make_unique<SensorPublisher>(node, simulator, loop.sender()));
     loop.add(std::make_unique<ContactPublisher>(private_node, simulator, loop.sender()));

@@ -107,4 +107,11 @@ std::optional<LinkPart> findFrame(const Simulator& simulator, const std::string&
   return findLink(simulator, name, where);
 }
 
+bool isWeightless(const Simulator& simulator, const LinkPart& part) {
+  if (part.model < 0) return false;
+  const std::vector<WeightlessPart>& weightless = simulator.models()[part.model].weightless;
+  return std::any_of(weightless.begin(), weightless.end(),
+                     [&](const WeightlessPart& known) { return known.body == part.body && (known.link < 0 || known.link == part.link); });
+}
+
 }  // namespace blem_sim::sim

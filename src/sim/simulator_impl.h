@@ -253,6 +253,7 @@ struct Simulator::Impl {
   AppliedLoads loads_;
   std::vector<BodyLoad> loads_now_;
   Epoch epoch_;
+  ControllerMemories memories_;
   mutable std::string layout_;  ///< empty: not known
 
   std::uint64_t step_count_ = 0;

@@ -99,6 +99,7 @@ void Simulator::Impl::removeModel(const std::string& name) {
   forgetContacts(world_.collidersOf(model));
   world_.removeModel(name);
   live_.erase(name);
+  memories_.erase(name);
   layout_.clear();
   reportWithoutStep();
 }

@@ -122,6 +122,7 @@ Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& stat
 
 SimulationState Simulator::Impl::save() const {
   SimulationState state = content();
+  state.memories = memories_;
   state.layout = layout();
   state.header = headerOf(state);
   return state;
@@ -146,8 +147,23 @@ void Simulator::Impl::restore(const SimulationState& state) {
   loads_ = std::move(parts.loads);
   epoch_ = parts.epoch;
   most_ticks_ = parts.most_ticks;
+  memories_ = state.memories;
   at_hand_.known = false;
   reportWithoutStep();
+}
+
+void Simulator::remember(const std::string& robot, const std::string& controller, const std::vector<double>& memory) {
+  if (memory.empty())
+    impl_->memories_[robot].erase(controller);
+  else
+    impl_->memories_[robot][controller] = memory;
+}
+
+std::vector<double> Simulator::memory(const std::string& robot, const std::string& controller) const {
+  const auto known = impl_->memories_.find(robot);
+  if (known == impl_->memories_.end()) return {};
+  const auto memory = known->second.find(controller);
+  return memory == known->second.end() ? std::vector<double>() : memory->second;
 }
 
 SimulationState Simulator::save() const { return impl_->save(); }

@@ -225,6 +225,21 @@ TEST(UrdfLoader, transmissionsAreRead) {
         << bad;
 }
 
+TEST(UrdfLoader, everyJointOfATransmissionHasIt) {
+  const RobotModel robot = load(
+      "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>"
+      "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint>"
+      "<joint name=\"k\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/></joint>"
+      "<transmission name=\"wrist\"><type>transmission_interface/DifferentialTransmission</type>"
+      "<joint name=\"j\"><role>joint1</role></joint><joint "
+      "name=\"k\"><role>joint2</role><mechanicalReduction>3</mechanicalReduction></joint>"
+      "<actuator name=\"m\"><mechanicalReduction>10</mechanicalReduction></actuator><actuator name=\"n\"/></transmission>");
+  ASSERT_NE(robot.transmissionOf("j"), nullptr);
+  ASSERT_NE(robot.transmissionOf("k"), nullptr);
+  EXPECT_EQ(robot.transmissionOf("j")->reduction, 1);
+  EXPECT_EQ(robot.transmissionOf("k")->reduction, 3);
+}
+
 TEST(UrdfLoader, notesSayWhatIsLeftOut) {
   const RobotModel robot = load(
       "<link name=\"a\"/><link name=\"b\"/><wheel/><wheel/><transmission name=\"t\"/>"

@@ -4,6 +4,7 @@ import math
 import os
 import subprocess
 import tempfile
+import time
 import unittest
 
 import rospkg
@@ -22,8 +23,8 @@ SCRIPT = os.path.join(rospkg.RosPack().get_path("blem_sim"), "scripts", "ros", "
 def trajectory(joints, points):
     """@param points [(time [s], positions)]"""
     message = JointTrajectory(joint_names=joints)
-    for time, positions in points:
-        message.points.append(JointTrajectoryPoint(positions=positions, time_from_start=rospy.Duration.from_sec(time)))
+    for seconds, positions in points:
+        message.points.append(JointTrajectoryPoint(positions=positions, time_from_start=rospy.Duration.from_sec(seconds)))
     return message
 
 
@@ -126,6 +127,20 @@ class CommandsTest(unittest.TestCase):
         self.assertEqual(code, 0, text)
         self.assertAlmostEqual(self.position_after(1000), -0.4, delta=0.03)
 
+    def test_script_that_loops_goes_on_after_a_reset(self):
+        file = os.path.join(tempfile.mkdtemp(dir="/tmp"), "motion.csv")
+        with open(file, "w") as stream:
+            stream.write("time,shoulder\n0,0\n5,0.3\n")
+        process = subprocess.Popen([SCRIPT, file, "--loop"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        self.addCleanup(lambda: process.poll() is None and process.kill())
+        sent = lambda: len([m for m in self.log.messages() if m.msg.startswith("sent 2 points")])
+        wait_until(lambda: sim_client.step(50) and sent() == 1, "the first motion")
+        sim_client.step(500)
+        sim_client.reset_simulation()
+        time.sleep(1)  # rospy looks at the clock three times a second
+        wait_until(lambda: sim_client.step(50) and sent() == 2, "the next motion")
+        self.assertIsNone(process.poll())
+
     def test_rosrun_finds_one_script(self):
         done = subprocess.run(["rosrun", "blem_sim", "play_trajectory", "--help"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.assertEqual(done.returncode, 0, done.stdout)
@@ -142,6 +157,10 @@ class CommandsTest(unittest.TestCase):
         code, text = self.play(b"time,shoulder\n0,0\n", "--approach", "inf")
         self.assertEqual(code, 2, text)
         self.assertIn("'inf'", text)
+        for topic in ("", "no topic", "7th"):
+            code, text = self.play(b"time,shoulder\n0,0\n", "--topic", topic)
+            self.assertEqual(code, 2, text)
+            self.assertIn("'%s' is no ROS topic" % topic, text)
 
 
 if __name__ == "__main__":

@@ -180,6 +180,7 @@ class StartupTest(unittest.TestCase):
         told = end()
         self.assertFalse(told.success)
         self.assertIn("full.bag ends after step", told.status_message)
+        self.assertIn("(File too large)", told.status_message, "the system's reason")
         wait_until(lambda: begin(whole).success, "the next record")
         self.assertTrue(end().success)
         self.assertEqual(subprocess.call(["rosrun", "blem_sim", "replay", whole]), 0)

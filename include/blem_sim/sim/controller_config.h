@@ -24,13 +24,14 @@ enum class ControllerKind { TRAJECTORY, GRIPPER, DRIVE };
 struct DriveConfig {
   enum class Odometry { ENCODER, WORLD };
   std::vector<std::string> left, right;  ///< joints of the wheels
-  double wheel_separation = 0;           ///< [m] between the middles of left and right wheels
-  double wheel_radius = 0;               ///< [m] at which they roll
-  double wheel_acceleration = 0;         ///< [m/s^2] of each wheel's rim; 0: any
-  double wheel_torque = 0;               ///< [N m] of each wheel's motor at most, beside its own limit; 0: that alone
-  double cmd_vel_timeout = 0.5;          ///< [s] simulated after the last command, when the wheels stop; 0: never
-  std::string command_topic;             ///< in the robot's namespace; empty: cmd_vel below the controller's name
-  std::string odom_topic;                ///< the same; empty: odom below the controller's name
+  double wheel_separation = 0;           ///< [m] between the middles of left and right wheels; 0: as the URDF has them
+  double wheel_radius = 0;               ///< [m] at which they roll; 0: that of the first left wheel's cylinder or sphere
+  double separation_multiplier = 1, radius_multiplier = 1;  ///< factors of calibration
+  double wheel_acceleration = 0;                            ///< [m/s^2] of each wheel's rim; 0: any
+  double wheel_torque = 0;                                  ///< [N m] of each wheel's motor at most, beside its own limit; 0: that alone
+  double cmd_vel_timeout = 0.5;                             ///< [s] simulated after the last command, when the wheels stop; 0: never
+  std::string command_topic;                                ///< in the robot's namespace; empty: cmd_vel below the controller's name
+  std::string odom_topic;                                   ///< the same; empty: odom below the controller's name
   std::string odom_frame = "odom";
   std::string base_frame = "base_link";  ///< link that odometry tells of; the root link if there is none of that name
   double publish_rate = 50;              ///< [Hz] of the odometry; 0 = every step, RATE_OFF = never

@@ -1,7 +1,6 @@
 // A robot on wheels that is driven by twists and tells of its way, with diff_drive_controller's semantics, without ROS.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -45,21 +44,35 @@ class DriveController {
   void command(const DriveTwist& twist);
   /**
    * To be called after each step, a reset and a restored state. A command of an age of cmd_vel_timeout ends. Wheels that were reset, or
-   * sent to a position by others, are the drive's again: they stop, and the encoder's odometry begins anew.
+   * sent to a position by others, are the drive's again: they stop, and the encoder's odometry begins anew. A restored state has the
+   * encoder's odometry and the age of the command; one that was saved without this drive has neither: they begin then.
    */
   void update();
   DriveOdometry odometry() const;
 
  private:
   const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
+  /** What it keeps from step to step, in the simulator's memory. */
+  struct Memory {
+    double steps = 0;         ///< when update was called last
+    double command_time = 0;  ///< [s]
+    double moves = 0;         ///< 1: the command is to move
+    double x = 0, y = 0, heading = 0;
+  };
+  /** That of the present step if there is none. */
+  Memory recall() const;
+  void keep(const Memory& memory);
   /** The wheels stop, and the encoder's odometry begins here. */
   void restart();
   void drive(const DriveTwist& twist);
+  /** Whether motors of wheels have a velocity to keep. */
+  bool isCommanded() const;
   bool isTakenOver() const;
   /** [m/s] of the rims of some wheels, their mean. @param first index into joints_ */
   double rimSpeed(std::size_t first, std::size_t count) const;
   DriveTwist rolled() const;
-  void roll(double dt);
+  /** Adds the way of a step. */
+  void roll(Memory* memory) const;
   DriveOdometry worldOdometry() const;
 
   Simulator* simulator_;
@@ -68,10 +81,6 @@ class DriveController {
   std::vector<int> joints_;  ///< indices into RobotInfo::joint_names, left wheels first
   int base_ = 0;
   bool running_ = false;
-  DriveTwist twist_;         ///< commanded
-  double command_time_ = 0;  ///< [s]
-  std::uint64_t steps_ = 0;  ///< when update was called last
-  double x_ = 0, y_ = 0, heading_ = 0;
 };
 
 }  // namespace blem_sim::sim

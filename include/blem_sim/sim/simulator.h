@@ -162,6 +162,14 @@ class Simulator {
   /** The same, and time and random generators start again. */
   void resetSimulation();
 
+  /**
+   * Lets a saved state have what a robot's controller keeps from step to step, until the robot is removed; hashes and records know nothing
+   * of it, as no step depends on it. Empty: nothing is kept.
+   */
+  void remember(const std::string& robot, const std::string& controller, const std::vector<double>& memory);
+  /** What remember was told last, or the restored state had; empty: nothing. */
+  std::vector<double> memory(const std::string& robot, const std::string& controller) const;
+
   SimulationState save() const;
   /**
    * Goes on from a saved state with the same bits.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,7 +64,6 @@ struct RobotInfo {
   bool publish_tf = true;
   OdometryConfig odom;
   std::vector<ControllerConfig> drives;  ///< of its URDF
-  bool odom_tf = false;                  ///< /tf has its root link in the frame of a drive's odometry, not in the world
 };
 
 struct SensorInfo {
@@ -184,6 +184,9 @@ struct StateHeader {
   std::uint64_t checksum = 0;  ///< of layout and content
 };
 
+/** What controllers keep from step to step, by robot and controller; no step depends on it. */
+using ControllerMemories = std::map<std::string, std::map<std::string, std::vector<double>>>;
+
 /** Everything a simulation needs to replay bit for bit: world, motors, trajectories, sensors, random generators, contact memory. */
 struct SimulationState {
   StateHeader header;
@@ -193,6 +196,7 @@ struct SimulationState {
   std::vector<std::uint64_t> words;
   std::string
       layout;  ///< things the state belongs to: settings, models, bodies, joints, colliders, sensors; each with a hash of its content
+  ControllerMemories memories;
 };
 
 }  // namespace blem_sim::sim

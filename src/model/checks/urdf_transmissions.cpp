@@ -33,17 +33,26 @@ double numberIn(const Element* parent, const char* name, double otherwise, const
   return value;
 }
 
-Transmission readTransmission(const Element& element, const std::string& source) {
-  const Element *joint = element.FirstChildElement("joint"), *actuator = element.FirstChildElement("actuator");
+/** @param joint null if the transmission names none @param actuator whose gear counts; null: the joint's own */
+Transmission readJoint(const Element& element, const Element* joint, const Element* actuator, const std::string& source) {
   Transmission transmission;
   transmission.name = nameOf(&element);
   transmission.joint = nameOf(joint);
   const std::string where = fmt::format("{}: transmission '{}'", source, transmission.name);
   const double reduction = numberIn(&element, "mechanicalReduction", 1, where);
-  transmission.reduction = numberIn(actuator, "mechanicalReduction", reduction, where);
+  transmission.reduction = numberIn(actuator ? actuator : joint, "mechanicalReduction", reduction, where);
   transmission.offset = numberIn(joint, "offset", 0, where);
   if (transmission.reduction == 0) throw InputError(geometry::oneLine(where + ": <mechanicalReduction> is 0; give the ratio of its gear"));
   return transmission;
+}
+
+/** One for each joint. Of several joints that share their actuators, as in a differential, each has its own gear and a motor of its own. */
+std::vector<Transmission> readTransmission(const Element& element, const std::string& source) {
+  const Element* joint = element.FirstChildElement("joint");
+  const Element* next = joint ? joint->NextSiblingElement("joint") : nullptr;
+  std::vector<Transmission> joints = {readJoint(element, joint, next ? nullptr : element.FirstChildElement("actuator"), source)};
+  for (; next; next = next->NextSiblingElement("joint")) joints.push_back(readJoint(element, next, nullptr, source));
+  return joints;
 }
 
 }  // namespace
@@ -52,12 +61,13 @@ std::vector<Transmission> readTransmissions(const Element& robot, const std::vec
                                             std::vector<std::string>* notes) {
   std::vector<Transmission> transmissions;
   for (const Element* child = robot.FirstChildElement("transmission"); child; child = child->NextSiblingElement("transmission")) {
-    const Transmission transmission = readTransmission(*child, source);
-    if (std::find(joints.begin(), joints.end(), transmission.joint) != joints.end())
-      transmissions.push_back(transmission);
-    else
-      notes->push_back(
-          geometry::oneLine(fmt::format("transmission '{}' left out: the robot has no joint '{}'", transmission.name, transmission.joint)));
+    for (const Transmission& transmission : readTransmission(*child, source)) {
+      if (std::find(joints.begin(), joints.end(), transmission.joint) != joints.end())
+        transmissions.push_back(transmission);
+      else
+        notes->push_back(geometry::oneLine(
+            fmt::format("transmission '{}' left out: the robot has no joint '{}'", transmission.name, transmission.joint)));
+    }
   }
   return transmissions;
 }

@@ -10,7 +10,7 @@
 namespace blem_sim::node {
 
 /**
- * The keys below a controller's name over the settings given; keys of other packages there (gains, type) are left alone.
+ * The keys below a controller's name over the settings given; a line tells of others (gains).
  * @param robot_node in the robot's namespace @throws InputError: a wrong type or range
  */
 sim::ControllerConfig withParameters(const ros::NodeHandle& robot_node, const sim::ControllerConfig& settings);

@@ -44,6 +44,24 @@ DriveServer::DriveServer(ros::NodeHandle robot_node, sim::DriveController contro
       });
 }
 
+void DriveServer::start() {
+  controller_.start();
+  const sim::DriveConfig& drive = controller_.config().drive;
+  if (!drive.enable_odom_tf || drive.publish_rate == sim::RATE_OFF || !framed_robot_.empty()) return;
+  framed_robot_ = robotInfo().name;
+  loop_->rootFrames()->take(framed_robot_);
+}
+
+void DriveServer::stop() {
+  controller_.stop();
+  leaveFrame();
+}
+
+void DriveServer::leaveFrame() {
+  if (!framed_robot_.empty()) loop_->rootFrames()->giveBack(framed_robot_);
+  framed_robot_.clear();
+}
+
 void DriveServer::step(double time) {
   controller_.update();
   if (controller_.running() && schedule_.due(time)) publish(time);
@@ -59,10 +77,12 @@ void DriveServer::publish(double time) {
   message->pose.pose = toPose(odometry.X_OB);
   message->twist.twist = toTwist(odometry.v_OB, odometry.w_OB);
   loop_->sender()->add(&odometry_publisher_, message);
-  if (controller_.config().drive.enable_odom_tf) publishTransform(time, odometry);
+  if (!framed_robot_.empty()) publishTransform(time, odometry);
 }
 
 void DriveServer::publishTransform(double time, const sim::DriveOdometry& odometry) {
+  if (time == last_transform_time_) return;  // tf2 warns of a stamp that comes twice
+  last_transform_time_ = time;
   const sim::RobotInfo& robot = robotInfo();
   const sim::Simulator& simulator = loop_->simulator();
   const int index = controller_.robot(), root = robot.description->root;

@@ -18,20 +18,24 @@
 
 namespace blem_sim::node {
 
-/** Topics `cmd_vel` (geometry_msgs/Twist) and `odom` (nav_msgs/Odometry), below the controller's name or as told, and /tf. Late subscribers
- * are told. */
+/**
+ * Topics `cmd_vel` (geometry_msgs/Twist) and `odom` (nav_msgs/Odometry), below the controller's name or as told, and /tf. Late subscribers
+ * are told. While a drive with enable_odom_tf runs, the root link is in its odometry's frame and not in the world.
+ */
 class DriveServer : public ControllerServer {
  public:
   /** @param robot_node in the robot's namespace @throws InputError: a topic that is none */
   DriveServer(ros::NodeHandle robot_node, sim::DriveController controller, SimulationLoop* loop);
+  ~DriveServer() override { leaveFrame(); }
 
   std::vector<std::string> joints() const override { return controller_.config().joints; }
-  void start() override { controller_.start(); }
-  void stop() override { controller_.stop(); }
+  void start() override;
+  void stop() override;
   void step(double time) override;
   void restartTime() override { schedule_.restart(); }
 
  private:
+  void leaveFrame();
   void publish(double time);
   /** The root link in the frame of odometry, so that a base below it has one parent. */
   void publishTransform(double time, const sim::DriveOdometry& odometry);
@@ -39,6 +43,8 @@ class DriveServer : public ControllerServer {
 
   sim::DriveController controller_;
   SimulationLoop* loop_;
+  std::string framed_robot_;         // whose root link it has in its frame; empty: none
+  double last_transform_time_ = -1;  // [s]
   PublishSchedule schedule_;
   GreetingPublisher<nav_msgs::Odometry> odometry_publisher_;
   GreetingPublisher<tf2_msgs::TFMessage> transform_publisher_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "loop/refusals.h"
+#include "loop/root_frames.h"
 #include "loop/stamped_commands.h"
 #include "loop/step_pacer.h"
 #include "sending/outbox.h"
@@ -70,6 +71,8 @@ class SimulationLoop {
 
   /** Commands that wait for their steps. */
   StampedCommands* stampedCommands() { return &stamped_commands_; }
+  /** Robots that drives have in the frames of their odometry. */
+  RootFrames* rootFrames() { return &root_frames_; }
   /** Counts of refused messages. */
   Refusals* refusals() { return &refusals_; }
 
@@ -86,6 +89,7 @@ class SimulationLoop {
   void drain();
 
   sim::Simulator* simulator_;
+  RootFrames root_frames_;  // before the publishers, which use it
   std::vector<std::unique_ptr<StepPublisher>> publishers_;
   std::vector<std::function<void()>> on_models_changed_, on_pace_changed_;
   std::vector<std::function<void(bool)>> before_steps_;

@@ -30,13 +30,17 @@ bool isRosName(const std::string& name) {
   return !name.empty() && name.front() != '~' && ros::names::validate(name, error);
 }
 
+bool hasJoint(const sim::RobotInfo& robot, const std::string& joint) {
+  return std::find(robot.joint_names.begin(), robot.joint_names.end(), joint) != robot.joint_names.end();
+}
+
+bool shareNamespace(const sim::RobotInfo& a, const sim::RobotInfo& b) {
+  return ros::names::clean("/" + a.name_space) == ros::names::clean("/" + b.name_space);
+}
+
 std::string sharedJoint(const sim::RobotInfo& a, const sim::RobotInfo& b) {
-  const auto resolved = [](const sim::RobotInfo& robot) { return ros::names::clean("/" + robot.name_space); };
-  if (resolved(a) != resolved(b)) return "";
-  const auto has = [&](const std::string& joint) {
-    return std::find(b.joint_names.begin(), b.joint_names.end(), joint) != b.joint_names.end();
-  };
-  const auto found = std::find_if(a.joint_names.begin(), a.joint_names.end(), has);
+  if (!shareNamespace(a, b)) return "";
+  const auto found = std::find_if(a.joint_names.begin(), a.joint_names.end(), [&](const std::string& joint) { return hasJoint(b, joint); });
   return found == a.joint_names.end() ? "" : *found;
 }
 

@@ -20,6 +20,9 @@ std::string tfPrefixIn(const std::string& name_space);
  *  meant below the node. */
 bool isRosName(const std::string& name);
 
+bool hasJoint(const sim::RobotInfo& robot, const std::string& joint);
+bool shareNamespace(const sim::RobotInfo& a, const sim::RobotInfo& b);
+
 /** Name of a joint that two robots of one namespace both have, so that they would take each other's commands; empty if there is none. */
 std::string sharedJoint(const sim::RobotInfo& a, const sim::RobotInfo& b);
 

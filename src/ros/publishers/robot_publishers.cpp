@@ -89,11 +89,16 @@ void OdometryPublisher::publish(const sim::StepReport& report) {
   }
 }
 
-TransformPublisher::TransformPublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender)
-    : simulator_(simulator), schedule_(simulator.config().rates.tf), sender_(sender), publisher_(&node, "/tf", ROBOT_QUEUE) {}
+TransformPublisher::TransformPublisher(ros::NodeHandle node, SimulationLoop* loop)
+    : simulator_(loop->simulator()),
+      drives_(*loop->rootFrames()),
+      schedule_(simulator_.config().rates.tf),
+      sender_(loop->sender()),
+      publisher_(&node, "/tf", ROBOT_QUEUE) {}
 
 void TransformPublisher::publish(const sim::StepReport& report) {
-  if (!schedule_.due(report.time)) return;
+  if (!schedule_.due(report.time) || report.time == last_time_) return;
+  last_time_ = report.time;
   const auto message = messages_.spare();
   message->transforms.clear();
   for (const sim::RobotInfo& robot : simulator_.robots())
@@ -109,7 +114,7 @@ void TransformPublisher::addRobot(const sim::StepReport& report, const sim::Robo
   const auto poseOf = [&](int link) { return linkMotion(simulator_, report, robot, link).X_WL; };
   const auto frameOf = [&](int link) { return ownFrame(robot, robot.description->links[link].name); };
   const std::string root = ownFrame(robot, robot.root_link), odom = namedFrame(robot, robot.odom.frame);
-  if (root != WORLD_FRAME && !robot.odom_tf) add({WORLD_FRAME, root, poseOf(robot.description->root)}, report.time, message);
+  if (root != WORLD_FRAME && !drives_.taken(robot.name)) add({WORLD_FRAME, root, poseOf(robot.description->root)}, report.time, message);
   if (odom != WORLD_FRAME) add({WORLD_FRAME, odom, robot.odom.X_WF}, report.time, message);
   for (const model::JointModel& joint : robot.description->joints) {
     if (joint.type != model::JointType::FLOATING && joint.type != model::JointType::PLANAR) continue;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "loop/root_frames.h"
 #include "messages/message_pool.h"
 #include "sending/greeting_publisher.h"
 #include "sending/publish_schedule.h"
@@ -59,12 +60,13 @@ class OdometryPublisher : public StepPublisher {
 
 /**
  * /tf: world to each object, and of each robot with publish_tf: world to the root link, unless that is the frame world itself or in that of
- * a drive's odometry, and to its odometry's frame, and what robot_state_publisher leaves out: children of floating and planar joints in
- * their parents. Told late subscribers during a pause, so that rviz sees where everything stands.
+ * a running drive's odometry, and to its odometry's frame, and what robot_state_publisher leaves out: children of floating and planar
+ * joints in their parents. Told late subscribers during a pause, so that rviz sees where everything stands. No stamp comes twice, after a
+ * reset at 0 s neither: tf2 warns of that.
  */
 class TransformPublisher : public StepPublisher {
  public:
-  TransformPublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender);
+  TransformPublisher(ros::NodeHandle node, SimulationLoop* loop);
   void publish(const sim::StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
@@ -72,9 +74,11 @@ class TransformPublisher : public StepPublisher {
   void addRobot(const sim::StepReport& report, const sim::RobotInfo& robot, tf2_msgs::TFMessage* message) const;
 
   const sim::Simulator& simulator_;
+  const RootFrames& drives_;
   PublishSchedule schedule_;
   StepSender* sender_;
   GreetingPublisher<tf2_msgs::TFMessage> publisher_;
+  double last_time_ = -1;  // [s]
   MessagePool<tf2_msgs::TFMessage> messages_;
 };
 

@@ -3,6 +3,9 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <string>
+#include <system_error>
 
 #include "blem_sim/geometry/input_error.h"
 #include "saving/record_bag.h"
@@ -13,6 +16,19 @@ namespace {
 
 constexpr std::size_t STEPS_PER_MESSAGE = 100;
 constexpr std::uint32_t CHUNK = 16384;  // [bytes] that a killed node loses at most: rosbag reindex finds chunks that were ended
+
+/** Writes to a bag. @throws BagException: rosbag's words, which name the call that failed, and the system's, which say why */
+template <typename Act>
+void withReason(const Act& act) {
+  errno = 0;
+  try {
+    act();
+  } catch (const rosbag::BagException& error) {
+    const int number = errno;
+    if (number == 0) throw;
+    throw rosbag::BagException(std::string(error.what()) + " (" + std::generic_category().message(number) + ")");
+  }
+}
 
 }  // namespace
 
@@ -34,7 +50,7 @@ void InputRecorder::write(const char* topic, const Message& message) {
   // A reader goes by the stamps, so they differ.
   const ros::WallTime now = ros::WallTime::now();
   last_stamp_ = std::max(ros::Time(now.sec, now.nsec), last_stamp_ + ros::Duration(0, 1));
-  bag_->write(topic, last_stamp_, message);
+  withReason([&] { bag_->write(topic, last_stamp_, message); });
 }
 
 void InputRecorder::start(const std::string& file) {
@@ -43,7 +59,7 @@ void InputRecorder::start(const std::string& file) {
     throw InputError("record: models or settings have changed since the node started; start the node with record: FILE");
   bag_ = std::make_unique<rosbag::Bag>();
   try {
-    bag_->open(file, rosbag::bagmode::Write);
+    withReason([&] { bag_->open(file, rosbag::bagmode::Write); });
     write(START_TOPIC, startMessage(*simulator_, configuration_));
     bag_->setChunkThreshold(CHUNK);  // ends the chunk of the beginning, too
   } catch (const rosbag::BagException& error) {

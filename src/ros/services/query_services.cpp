@@ -92,11 +92,12 @@ void QueryServices::addLinks(const sim::Simulator& simulator) {
     response->link_state.twist = toTwist(motion.v_WL, motion.w_WL);
   });
   services_.add<GetLinkProperties>("get_link_properties", [&simulator](const auto& request, auto* response) {
-    const geometry::MassProperties inertial = inertialOf(simulator, sim::findLink(simulator, request.link_name, "link_name"));
+    const sim::LinkPart part = sim::findLink(simulator, request.link_name, "link_name");
+    const geometry::MassProperties inertial = inertialOf(simulator, part);
     Pose X_LCom = Pose::Identity();
     X_LCom.translation() = inertial.com;
     response->com = toPose(X_LCom);
-    response->gravity_mode = true;
+    response->gravity_mode = !sim::isWeightless(simulator, part);
     response->mass = inertial.mass;
     const Matrix3& I = inertial.inertia;
     response->ixx = I(0, 0), response->ixy = I(0, 1), response->ixz = I(0, 2);

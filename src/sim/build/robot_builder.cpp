@@ -145,7 +145,6 @@ void RobotBuilder::yieldToDrives() {
     if (controller.kind == ControllerKind::DRIVE) drives.push_back(controller);
   for (const ControllerConfig& controller : drives) {
     if (controller.drive.publish_rate == RATE_OFF) continue;
-    info_.odom_tf = info_.odom_tf || controller.drive.enable_odom_tf;
     const std::string topic = resolvedTopic(info_.name_space, odometryTopic(controller));
     if (topic != resolvedTopic(info_.name_space, info_.odom.topic)) continue;
     info_.odom.topic = TRUE_ODOMETRY;

@@ -46,7 +46,7 @@ class RobotBuilder {
   void narrowLayers(const std::vector<double>& shares);
   std::string linkOf(const contact::Collider& collider) const { return model_->links[collider.link].name; }
   void nameFrames();
-  /** Leaves topics and frames to the odometry of drives. */
+  /** Leaves topics to the odometry of drives. */
   void yieldToDrives();
   /** Notes on a root link of the name that the frame of the world has. */
   void tellOfWorldLink();

@@ -39,7 +39,7 @@ int SimulatedWorld::addCollider(contact::Collider collider, double width, const 
   collider.surface = surface;
   report.name = collider.name;
   report.boundary_width = width;
-  report.bytes = collider.geometry->bytes();
+  report.bytes = collider.geometry->bytes() + (collider.outside ? collider.outside->bytes() : 0);
   load_report.push_back(std::move(report));
   const int index = geometry::takeSlot(&free_colliders_, &colliders);
   colliders[index] = std::move(collider);

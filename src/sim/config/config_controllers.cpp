@@ -15,6 +15,8 @@ const std::vector<std::string> DRIVE_KEYS = {"left_wheel",
                                              "right_wheel",
                                              "wheel_separation",
                                              "wheel_radius",
+                                             "wheel_separation_multiplier",
+                                             "wheel_radius_multiplier",
                                              "wheel_acceleration",
                                              "wheel_torque",
                                              "cmd_vel_timeout",
@@ -122,9 +124,8 @@ void readDriveSettings(YamlReader& reader, ControllerConfig* config) {
   config->joints.insert(config->joints.end(), drive.right.begin(), drive.right.end());
   reader.read("wheel_separation", &drive.wheel_separation, NumberRange::positive());
   reader.read("wheel_radius", &drive.wheel_radius, NumberRange::positive());
-  for (const auto& [key, length] :
-       {std::make_pair("wheel_separation", drive.wheel_separation), std::make_pair("wheel_radius", drive.wheel_radius)})
-    if (length == 0) reader.refuse(key, "is missing; give it in metres");
+  reader.read("wheel_separation_multiplier", &drive.separation_multiplier, NumberRange::positive());
+  reader.read("wheel_radius_multiplier", &drive.radius_multiplier, NumberRange::positive());
   reader.read("wheel_acceleration", &drive.wheel_acceleration, NumberRange::notNegative());
   reader.read("wheel_torque", &drive.wheel_torque, NumberRange::notNegative());
   reader.read("cmd_vel_timeout", &drive.cmd_vel_timeout, NumberRange::notNegative());

@@ -42,15 +42,15 @@ void readLimits(YamlReader& reader, const Quantities& quantities, SensorConfig* 
 void readNoise(YamlReader& reader, const Quantities& quantities, SensorConfig* sensor) {
   YamlReader noise = reader.section("noise");
   if (sensor->type == SensorType::FORCE_TORQUE) {
-    noise.read("stddev", &sensor->noise[0].stddev, NumberRange::notNegative());  // of both
+    noise.read("stddev", &sensor->noise[0].stddev, NumberRange::deviation());  // of both
     sensor->noise[1] = sensor->noise[0];
   }
   QuantityNoise* of = sensor->noise.data();
   for (const std::string& quantity : quantities) {
-    noise.read(quantity + "_stddev", &of->stddev, NumberRange::notNegative());
-    noise.read(quantity + "_bias_stddev", &of->bias_stddev, NumberRange::notNegative());
-    noise.read(quantity + "_bias", &of->bias, NumberRange::any());
-    noise.read(quantity + "_bias_spread", &of->bias_spread, NumberRange::notNegative());
+    noise.read(quantity + "_stddev", &of->stddev, NumberRange::deviation());
+    noise.read(quantity + "_bias_stddev", &of->bias_stddev, NumberRange::deviation());
+    noise.read(quantity + "_bias", &of->bias, NumberRange::bias());
+    noise.read(quantity + "_bias_spread", &of->bias_spread, NumberRange::deviation());
     ++of;
   }
   noise.finish();
@@ -110,7 +110,7 @@ void readOdometry(YamlReader& reader, SensorConfig* sensor) {
   if (const auto twist = reader.choice("twist", axes)) sensor->twist = axes[*twist];
   reader.read("offset", &sensor->X_offset);
   YamlReader noise = reader.section("noise");
-  noise.read("stddev", &sensor->noise[0].stddev, NumberRange::notNegative());
+  noise.read("stddev", &sensor->noise[0].stddev, NumberRange::deviation());
   noise.finish();
 }
 
@@ -150,7 +150,7 @@ void readDepthCamera(YamlReader& reader, SensorConfig* sensor) {
   topics.finish();
   YamlReader noise = reader.section("noise");
   if (const auto model = noise.choice("model", {"gaussian", "kinect"})) rays.noise = *model ? RangeNoise::KINECT : RangeNoise::GAUSSIAN;
-  noise.read("stddev", &rays.stddev, NumberRange::notNegative());
+  noise.read("stddev", &rays.stddev, NumberRange::deviation());
   noise.finish();
   refuseFaults(reader, *sensor);
 }
@@ -171,7 +171,7 @@ void readLidar(YamlReader& reader, SensorConfig* sensor) {
     rays.highest_angle = (*angle)[1];
   }
   YamlReader noise = reader.section("noise");
-  noise.read("stddev", &rays.stddev, NumberRange::notNegative());
+  noise.read("stddev", &rays.stddev, NumberRange::deviation());
   noise.finish();
   refuseFaults(reader, *sensor);
 }

@@ -9,6 +9,7 @@ namespace blem_sim::sim {
 namespace {
 
 constexpr double WIDEST = 3.1;         // [rad] a plane image has no room for half a circle
+constexpr double ROUNDED = 1e-3;       // [rad] by which a whole or a quarter turn may be written too large, as in 6.28319 and 1.5708
 constexpr double MOST_RAYS = 1 << 24;  // of a reading: 64 MB of float
 
 std::optional<ConfigFault> faultOfCount(const char* key, int value) {
@@ -31,7 +32,7 @@ std::optional<ConfigFault> faultOfCamera(const RangeSensorConfig& rays) {
 
 /** The angles of the outer beams or layers, which lie at one place if there is but one. */
 std::optional<ConfigFault> faultOfAngles(const char* key, double first, double last, bool several) {
-  if (std::isfinite(first) && std::isfinite(last) && last - first <= 2 * M_PI + 1e-9 && (several ? first < last : first <= last))
+  if (std::isfinite(first) && std::isfinite(last) && last - first <= 2 * M_PI + ROUNDED && (several ? first < last : first <= last))
     return std::nullopt;
   return ConfigFault{key, fmt::format("is [{}, {}]; give the smaller angle first, at most a turn apart [rad]", first, last)};
 }
@@ -43,7 +44,7 @@ std::optional<ConfigFault> faultOfLidar(const RangeSensorConfig& rays) {
   if (rays.layers == 1 && (rays.lowest_angle != 0 || rays.highest_angle != 0))
     return ConfigFault{"vertical_angle",
                        "is there, but one layer lies in the plane of x and y; take it away, give more layers, or turn pose"};
-  if (std::max(std::abs(rays.lowest_angle), std::abs(rays.highest_angle)) > M_PI / 2)
+  if (std::max(std::abs(rays.lowest_angle), std::abs(rays.highest_angle)) > M_PI / 2 + ROUNDED)
     return ConfigFault{"vertical_angle", "goes beyond straight up or down; give angles from -1.57 to 1.57 rad"};
   if (auto fault = faultOfAngles("vertical_angle", rays.lowest_angle, rays.highest_angle, rays.layers > 1)) return fault;
   return faultOfRays("beams", rays.beams, rays.layers);

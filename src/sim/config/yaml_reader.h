@@ -28,6 +28,9 @@ struct NumberRange {
   static NumberRange notNegativeOrInfinite() {
     return {0, std::numeric_limits<double>::infinity(), false, "a number of at least 0, or .inf"};
   }
+  /** Deviations and biases of readings, in their units: beyond that a number is a slip, and readings are noise alone. */
+  static NumberRange deviation() { return {0, 1e7, false, "a number from 0 to 1e7"}; }
+  static NumberRange bias() { return {-1e7, 1e7, false, "a number from -1e7 to 1e7"}; }
   static NumberRange fraction() { return {0, 1, false, "a number from 0 to 1"}; }
 };
 

@@ -9,11 +9,13 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/link_motion.h"
 #include "controllers/controlled_joints.h"
+#include "controllers/wheel_measures.h"
 
 namespace blem_sim::sim {
 namespace {
 
 constexpr double SAME_AGE = 1e-9;     // [s] rounding of times that are sums of steps
+constexpr double ANY_RAMP = 1e6;      // [s] after which every ramp has ended
 constexpr double SMALL_ANGLE = 1e-4;  // [rad] up to which two terms of the sine's series are exact
 
 /** sin(x) / x */
@@ -21,8 +23,8 @@ double sinc(double x) { return std::abs(x) < SMALL_ANGLE ? 1 - x * x / 6 : std::
 
 std::vector<int> wheelsOf(const RobotInfo& robot, const ControllerConfig& config) {
   const DriveConfig& drive = config.drive;
-  if (drive.left.empty() || drive.right.empty() || !(drive.wheel_separation > 0) || !(drive.wheel_radius > 0))
-    throw InputError(fmt::format("controller '{}': needs left_wheel, right_wheel, wheel_separation and wheel_radius", config.name));
+  if (drive.left.empty() || drive.right.empty())
+    throw InputError(fmt::format("controller '{}': needs left_wheel and right_wheel", config.name));
   for (const std::string& wheel : config.joints)
     if (std::count(config.joints.begin(), config.joints.end(), wheel) > 1)
       throw InputError(fmt::format("controller '{}': wheel '{}' is there twice; name it once, left or right", config.name, wheel));
@@ -37,6 +39,7 @@ DriveController::DriveController(Simulator* simulator, int robot, ControllerConf
       config_(std::move(config)),
       joints_(wheelsOf(simulator->robots().at(robot), config_)) {
   const model::RobotModel& model = *simulator->robots()[robot].description;
+  config_.drive = measured(config_, model);
   const int link = model.linkIndex(config_.drive.base_frame);
   base_ = link < 0 ? model.root : link;
 }
@@ -51,11 +54,22 @@ void DriveController::start() {
 void DriveController::stop() {
   if (running_) drive({});
   running_ = false;
+  simulator_->remember(robot_, config_.name, {});
+}
+
+DriveController::Memory DriveController::recall() const {
+  const std::vector<double> n = simulator_->memory(robot_, config_.name);
+  const bool sound = n.size() == 6 && std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); });
+  if (sound) return {n[0], n[1], n[2], n[3], n[4], n[5]};
+  return {static_cast<double>(simulator_->steps()), simulator_->time(), isCommanded() ? 1.0 : 0.0, 0, 0, 0};
+}
+
+void DriveController::keep(const Memory& memory) {
+  simulator_->remember(robot_, config_.name, {memory.steps, memory.command_time, memory.moves, memory.x, memory.y, memory.heading});
 }
 
 void DriveController::restart() {
-  x_ = y_ = heading_ = 0;
-  steps_ = simulator_->steps();
+  keep({static_cast<double>(simulator_->steps()), simulator_->time(), 0, 0, 0, 0});
   drive({});
 }
 
@@ -65,7 +79,10 @@ void DriveController::command(const DriveTwist& twist) {
     if (!isCommand(number))
       throw InputError(fmt::format("twist: {}: is {}; give a finite number within {:g}", field, number, LARGEST_COMMAND));
   drive(twist);
-  command_time_ = simulator_->time();
+  Memory memory = recall();
+  memory.command_time = simulator_->time();
+  memory.moves = twist.linear != 0 || twist.angular != 0;
+  keep(memory);
 }
 
 void DriveController::drive(const DriveTwist& twist) {
@@ -78,20 +95,27 @@ void DriveController::drive(const DriveTwist& twist) {
   command.acceleration = settings.wheel_acceleration / settings.wheel_radius;
   command.max_effort = settings.wheel_torque;
   simulator_->driveJoints(robot(), command);
-  twist_ = twist;
 }
 
 void DriveController::update() {
-  const bool is_next = simulator_->steps() == steps_ + 1;
-  steps_ = simulator_->steps();
   if (!running_) return;
   if (isTakenOver()) return restart();
-  // A state that is restored sets wheels to where they have not rolled to.
-  if (is_next) roll(simulator_->config().time_step);
-  const double now = simulator_->time(), timeout = config_.drive.cmd_vel_timeout;
-  command_time_ = std::min(command_time_, now);
-  const bool moves = twist_.linear != 0 || twist_.angular != 0;
-  if (timeout > 0 && moves && now > command_time_ + timeout - SAME_AGE) drive({});
+  Memory memory = recall();
+  // A state that is restored has the memory of its own step: its wheels have not rolled to where they are.
+  if (static_cast<double>(simulator_->steps()) == memory.steps + 1) roll(&memory);
+  memory.steps = static_cast<double>(simulator_->steps());
+  const double timeout = config_.drive.cmd_vel_timeout;
+  if (timeout > 0 && memory.moves != 0 && simulator_->time() > memory.command_time + timeout - SAME_AGE) {
+    memory.moves = 0;
+    drive({});
+  }
+  keep(memory);
+}
+
+bool DriveController::isCommanded() const {
+  const double then = simulator_->time() + ANY_RAMP;
+  return std::any_of(joints_.begin(), joints_.end(),
+                     [&](int joint) { return simulator_->desiredState(robot(), joint, then).velocity != 0; });
 }
 
 bool DriveController::isTakenOver() const {
@@ -112,19 +136,21 @@ DriveTwist DriveController::rolled() const {
 }
 
 /** On an arc, whose chord leads half its turn aside. */
-void DriveController::roll(double dt) {
+void DriveController::roll(Memory* memory) const {
   const DriveTwist twist = rolled();
+  const double dt = simulator_->config().time_step;
   const double half = twist.angular * dt / 2, chord = twist.linear * dt * sinc(half);
-  x_ += chord * std::cos(heading_ + half);
-  y_ += chord * std::sin(heading_ + half);
-  heading_ = std::remainder(heading_ + 2 * half, 2 * M_PI);
+  memory->x += chord * std::cos(memory->heading + half);
+  memory->y += chord * std::sin(memory->heading + half);
+  memory->heading = std::remainder(memory->heading + 2 * half, 2 * M_PI);
 }
 
 DriveOdometry DriveController::odometry() const {
   if (config_.drive.source == DriveConfig::Odometry::WORLD) return worldOdometry();
   const DriveTwist twist = rolled();
+  const Memory memory = recall();
   DriveOdometry odometry;
-  odometry.X_OB = makePose({x_, y_, 0}, {0, 0, heading_});
+  odometry.X_OB = makePose({memory.x, memory.y, 0}, {0, 0, memory.heading});
   odometry.v_OB.x() = twist.linear;
   odometry.w_OB.z() = twist.angular;
   return odometry;

@@ -18,10 +18,10 @@ bool takeLarger(double GazeboNoise::*number, const GazeboNoise& axis, GazeboNois
 
 GazeboNoise readNoise(GazeboReader* reader, const std::string& path, const std::string& type_path) {
   GazeboNoise noise;
-  reader->read(path + "/mean", &noise.mean, NumberRange::any());
-  reader->read(path + "/stddev", &noise.stddev, NumberRange::notNegative());
-  reader->read(path + "/bias_mean", &noise.bias_mean, NumberRange::any());
-  reader->read(path + "/bias_stddev", &noise.bias_stddev, NumberRange::notNegative());
+  reader->read(path + "/mean", &noise.mean, NumberRange::bias());
+  reader->read(path + "/stddev", &noise.stddev, NumberRange::deviation());
+  reader->read(path + "/bias_mean", &noise.bias_mean, NumberRange::bias());
+  reader->read(path + "/bias_stddev", &noise.bias_stddev, NumberRange::deviation());
   const std::string type = reader->text(type_path).value_or("gaussian");
   if (type == "gaussian") return noise;
   if (type != "none") reader->fault(type_path, fmt::format("'{}' is not known; the noise is left out: write gaussian", type));

@@ -30,7 +30,7 @@ void readCommon(GazeboReader* reader, GazeboSensor* sensor) {
 
 double gaussianNoise(GazeboReader* reader) {
   double stddev = 0;
-  reader->read("gaussianNoise", &stddev, NumberRange::notNegative());
+  reader->read("gaussianNoise", &stddev, NumberRange::deviation());
   return stddev;
 }
 

@@ -13,6 +13,7 @@ GazeboRobot withGazeboBlocks(const RobotConfig& config, const model::RobotModel&
     readGazeboValues(block, model, &notes, &robot.config);
     sensors.read(block);
   }
+  sensors.finish();
   robot.notes = notes.lines();
   return robot;
 }

@@ -39,6 +39,28 @@ const char* wordOf(SensorType type) {
   }
 }
 
+/** A plugin that has a joint follow another; here <mimic> does. */
+bool isMimicPlugin(const std::string& name) { return name.find("mimic_joint") != std::string::npos; }
+
+/** Notes a joint that follows in Gazebo alone. */
+void readMimicPlugin(GazeboReader* reader, const model::RobotModel& model) {
+  model::Mimic asked;
+  std::string follower;
+  reader->read("joint", &asked.joint);
+  reader->read("mimicJoint", &follower);
+  reader->read("multiplier", &asked.multiplier, NumberRange::any());
+  reader->read("offset", &asked.offset, NumberRange::any());
+  reader->skip({"robotNamespace"});
+  reader->skipWithoutEffect({"maxEffort", "sensitiveness", "hasPID"});
+  const int joint = model.jointIndex(follower);
+  if (joint < 0) return reader->fault("mimicJoint", unknownName("joint", follower, model.joints) + "; it is left out: correct it");
+  const std::optional<model::Mimic>& mimic = model.joints[joint].mimic;
+  if (mimic && mimic->joint == asked.joint && mimic->multiplier == asked.multiplier && mimic->offset == asked.offset) return;
+  reader->fault("mimicJoint", fmt::format("'{}' follows as its <mimic> says, and it has {}: write <mimic joint=\"{}\" multiplier=\"{:g}\" "
+                                          "offset=\"{:g}\"/> into it",
+                                          follower, mimic ? "another one" : "none", asked.joint, asked.multiplier, asked.offset));
+}
+
 }  // namespace
 
 void GazeboSensors::read(const model::GazeboBlock& gazebo) {
@@ -66,6 +88,7 @@ void GazeboSensors::readSensor(const model::GazeboBlock& block) {
     reader.fault("pose", "the sensor sits at the joint; it is left out: take it away");
   reader.skip({"always_on", "visualize", "topic", "pose/frame"});
   reader.finish();
+  bool has_plugin = false;
   for (const model::GazeboBlock& inner : block.blocks) {
     const GazeboPluginType* plugin = inner.element == "plugin" ? gazeboPluginType(inner.type) : nullptr;
     GazeboReader plugin_reader(inner, &notes_);
@@ -75,9 +98,18 @@ void GazeboSensors::readSensor(const model::GazeboBlock& block) {
     }
     plugin->read(&plugin_reader, &sensor);
     plugin_reader.finish();
+    has_plugin = true;
   }
   if (config.rate == 0) config.rate = type->rate;
-  add(std::move(sensor), block);
+  if (has_plugin)
+    add(std::move(sensor), block);
+  else
+    plain_.push_back({std::move(sensor), &block});
+}
+
+void GazeboSensors::finish() {
+  for (auto& [sensor, block] : plain_) add(std::move(sensor), *block);
+  plain_.clear();
 }
 
 void GazeboSensors::readPlugin(const model::GazeboBlock& block) {
@@ -108,6 +140,8 @@ void GazeboSensors::readOtherPlugin(const model::GazeboBlock& block) {
   } else if (name == "gazebo_ros_joint_state_publisher") {
     reader.skip({"robotNamespace", "alwaysOn"});
     reader.skipWithoutEffect({"jointName", "updateRate"});
+  } else if (isMimicPlugin(name)) {
+    readMimicPlugin(&reader, model_);
   } else {
     return notes_.unknown(reader.where(), fmt::format("of type '{}'", block.type));
   }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
@@ -18,6 +20,8 @@ class GazeboSensors {
 
   /** Reads the sensors and plugins in a <gazebo>. */
   void read(const model::GazeboBlock& gazebo);
+  /** After all blocks: adds sensors without a plugin, of which Gazebo tells ROS nothing, so that they take nobody's topic. */
+  void finish();
 
  private:
   void readSensor(const model::GazeboBlock& block);
@@ -34,7 +38,8 @@ class GazeboSensors {
   const model::RobotModel& model_;
   GazeboNotes& notes_;
   RobotConfig& config_;
-  std::size_t configured_ = config_.sensors.size();  ///< sensors of the configuration, which come first
+  std::vector<std::pair<GazeboSensor, const model::GazeboBlock*>> plain_;  ///< without a plugin; blocks of the model
+  std::size_t configured_ = config_.sensors.size();                        ///< sensors of the configuration, which come first
 };
 
 }  // namespace blem_sim::sim

@@ -37,6 +37,22 @@ void putNumbers(std::ostream& stream, const std::vector<double>& numbers) {
   }
 }
 
+void putText(std::ostream& stream, const std::string& text) {
+  putWord(stream, text.size());
+  stream << text;
+}
+
+/** Most states have none, and no bytes for them. */
+void putMemories(std::ostream& stream, const ControllerMemories& memories) {
+  for (const auto& [robot, controllers] : memories) {
+    for (const auto& [controller, memory] : controllers) {
+      putText(stream, robot);
+      putText(stream, controller);
+      putNumbers(stream, memory);
+    }
+  }
+}
+
 /** Walks through the bytes of a file. */
 class FileReader {
  public:
@@ -70,9 +86,7 @@ class FileReader {
     return numbers;
   }
 
-  void expectEnd() const {
-    if (at_ != bytes_.size()) fail();
-  }
+  bool atEnd() const { return at_ == bytes_.size(); }
 
  private:
   [[noreturn]] void fail() const {
@@ -91,13 +105,13 @@ std::string stateBytes(const SimulationState& state) {
   stream.write(FILE_MAGIC, sizeof FILE_MAGIC - 1);
   for (const std::uint64_t word : {state.header.format, state.header.layout, state.header.length, state.header.checksum})
     putWord(stream, word);
-  putWord(stream, state.layout.size());
-  stream << state.layout;
+  putText(stream, state.layout);
   putWord(stream, state.step);
   putNumbers(stream, state.world.numbers);
   putWords(stream, state.world.words);
   putNumbers(stream, state.numbers);
   putWords(stream, state.words);
+  putMemories(stream, state.memories);
   return stream.str();
 }
 
@@ -115,7 +129,10 @@ SimulationState stateOf(const std::string& bytes, const std::string& source) {
   state.world.words = reader.words();
   state.numbers = reader.numbers();
   state.words = reader.words();
-  reader.expectEnd();
+  while (!reader.atEnd()) {
+    const std::string robot = reader.text(reader.word()), controller = reader.text(reader.word());
+    state.memories[robot][controller] = reader.numbers();
+  }
   return state;
 }
 

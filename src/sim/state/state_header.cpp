@@ -12,13 +12,18 @@ namespace {
 constexpr std::uint64_t MAGIC = 0x424c454d00000000u, VERSION = 2, VERSION_BITS = 0xffffffffu;
 
 std::uint64_t lengthOf(const SimulationState& state) {
-  return 1 + state.world.numbers.size() + state.world.words.size() + state.numbers.size() + state.words.size();
+  std::uint64_t length = 1 + state.world.numbers.size() + state.world.words.size() + state.numbers.size() + state.words.size();
+  for (const auto& [robot, controllers] : state.memories)
+    for (const auto& [controller, memory] : controllers) length += memory.size();
+  return length;
 }
 
 std::uint64_t checksumOf(const SimulationState& state, std::uint64_t layout) {
   ContentHash hash;
   hash.add(layout).add(state.step);
   hash.add(state.world.numbers).add(state.world.words).add(state.numbers).add(state.words);
+  for (const auto& [robot, controllers] : state.memories)
+    for (const auto& [controller, memory] : controllers) hash.add(robot).add(controller).add(memory);
   return hash.value();
 }
 

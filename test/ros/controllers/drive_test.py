@@ -15,7 +15,7 @@ from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
-from blem_sim.srv import DeleteModel, ListControllers, SpawnModel
+from blem_sim.srv import DeleteModel, ListControllers, LoadController, SpawnModel, SwitchController, UnloadController
 from sim_client import PATIENCE, Recorder, wait_until
 
 NAME = "differential_drive_controller"
@@ -117,6 +117,37 @@ class DriveTest(unittest.TestCase):
         late, tf = self.listen("/odom", Odometry), self.listen("/tf", TFMessage)
         late.wait_for(1)
         wait_until(lambda: any(t.child_frame_id == "base_link" for m in tf.messages() for t in m.transforms), "the frame of the base")
+
+    def parents_of(self, frame, tf):
+        """Parents that a frame has in steps to come."""
+        tf.clear()
+        sim_client.step(100)
+        wait_until(lambda: any(t.child_frame_id == frame for m in tf.messages() for t in m.transforms), frame)
+        rospy.rostime.wallsleep(sim_client.SETTLE)
+        return {t.header.frame_id for m in tf.messages() for t in m.transforms if t.child_frame_id == frame}
+
+    def test_a_frame_has_one_parent_whatever_drive_runs(self):
+        tf, manager = self.listen("/tf", TFMessage), "/second/controller_manager/"
+        switch = rospy.ServiceProxy(manager + "switch_controller", SwitchController)
+        self.assertEqual(self.parents_of("second/base_link", tf), {"world"})
+        self.assertTrue(rospy.ServiceProxy(manager + "load_controller", LoadController)("loaded").ok)
+        self.assertTrue(switch(["loaded"], [NAME], 2, False, 0).ok)
+        self.assertEqual(self.parents_of("second/base_link", tf), {"second/odom"})
+        self.assertTrue(switch([NAME], ["loaded"], 2, False, 0).ok)
+        self.assertEqual(self.parents_of("second/base_link", tf), {"world"})
+        self.assertTrue(rospy.ServiceProxy(manager + "unload_controller", UnloadController)("loaded").ok)
+
+    def test_no_stamp_comes_twice_after_resets_at_the_beginning(self):
+        tf = self.listen("/tf", TFMessage)
+        sim_client.reset_simulation()
+        sim_client.step(0)
+        rospy.rostime.wallsleep(sim_client.SETTLE)
+        tf.clear()
+        for _ in range(2):
+            sim_client.reset_simulation()
+        sim_client.step(50)
+        wait_until(lambda: any(t.header.stamp.to_sec() > 0 for m in tf.messages() for t in m.transforms), "a step's frames")
+        self.assertEqual([t for m in tf.messages() for t in m.transforms if t.header.stamp.to_sec() == 0], [])
 
     def test_a_faulty_twist_changes_nothing_and_is_told(self):
         odometry = self.listen("/odom", Odometry)

@@ -14,6 +14,7 @@ import rospy
 import rostest
 import yaml
 from geometry_msgs.msg import Point, Pose
+from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
 from trajectory_msgs.msg import JointTrajectoryPoint
@@ -112,6 +113,36 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertEqual(models(), ["ground", "arm_on_base", "cube"])
         sim_client.step(10)
         self.assertFalse(service("get_model_state", srv.GetModelState)("second", "").success)
+
+    def test_robots_of_one_namespace_take_the_commands_of_their_own_joints(self):
+        log = Recorder("/rosout", Log)
+        self.addCleanup(log.stop)
+        wait_until(log.connected, "the log")
+        self.assertTrue(spawn("post", POST, z=4).success)
+        command = rospy.Publisher("/joint_command", JointState, queue_size=1)
+        wait_until(lambda: command.get_num_connections() > 0, "the node to listen")
+        for joint, effort in (("swing", -100.0), ("shoulder", 4.0)):
+            command.publish(JointState(name=[joint], effort=[effort]))
+            rospy.rostime.wallsleep(sim_client.SETTLE)
+            sim_client.step(20)
+            self.assertGreater(service("get_joint_properties", srv.GetJointProperties)(joint).rate[0] * effort, 0, joint)
+        self.assertFalse([m.msg for m in log.messages() if "command refused" in m.msg])
+        command.publish(JointState(name=["swong"], effort=[1.0]))
+        wait_until(lambda: [m.msg for m in log.messages() if "command refused" in m.msg and "swong" in m.msg], "a line about a joint of neither")
+
+    def test_a_link_without_gravity_is_told_as_one(self):
+        weightless = BALL.replace("</robot>", '<gazebo reference="ball"><turnGravityOff>true</turnGravityOff></gazebo></robot>')
+        for xml, acts in ((BALL, True), (weightless, False)):
+            self.assertTrue(spawn("floater", xml, x=3).success)
+            found = service("get_link_properties", srv.GetLinkProperties)("floater::ball")
+            self.assertEqual(found.gravity_mode, acts)
+            request = dict(link_name="floater::ball", com=found.com, mass=2, **{name: getattr(found, name) for name in ("ixx", "iyy", "izz")})
+            put = service("set_link_properties", srv.SetLinkProperties)
+            self.assertTrue(put(gravity_mode=acts, **request).success, "what get_link_properties told is taken")
+            refused = put(gravity_mode=not acts, **request)
+            self.assertFalse(refused.success)
+            self.assertIn("turnGravityOff", refused.status_message)
+            self.assertTrue(delete("floater").success)
 
     def test_joints_with_a_transmission_hold(self):
         transmission = """<transmission name="drive"><type>transmission_interface/SimpleTransmission</type>

@@ -74,6 +74,9 @@ TEST(LayerMarkers, ShellsAreTranslucentAndOnlyWhereThereIsAWidth) {
   EXPECT_EQ(markers[0].points.size(), 36U);
   EXPECT_LT(markers[0].color.a, 0.5F);
   EXPECT_LT(markers[0].color.r, 1);
+  collider.outside = collider.geometry;
+  EXPECT_TRUE(layerMarkers(collider, style).empty()) << "a layer that lies inside ends at the surface that is drawn";
+  collider.outside.reset();
   collider.geometry = contact::CollisionGeometry::halfSpace(Vector3::UnitZ(), 0);
   EXPECT_TRUE(layerMarkers(collider, style).empty());
 }

@@ -128,6 +128,16 @@ TEST(WorldBuilder, AFileShowsAnEnvironmentThatIsShrunk) {
   EXPECT_TRUE(isShownByItsFile(shrunk));
 }
 
+TEST(WorldBuilder, TheLoadReportCountsTheSurfaceOfAShrunkMeshToo) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.environments[0].uri = meshFile("block_to_count", geometry::boxMesh(Vector3::Ones()));
+  config.environments[0].contact.boundary_width = 0.01;
+  const std::size_t plain = Simulator(config, model::UriResolver()).loadReport()[0].bytes;
+  config.environments[0].contact.shrink = true;
+  EXPECT_GE(Simulator(config, model::UriResolver()).loadReport()[0].bytes, 2 * plain);
+}
+
 TEST(WorldBuilder, AFileDoesNotShowAnEnvironmentThatIsChanged) {
   ASSERT_TRUE(isShownByItsFile(ground()));
   EnvironmentConfig mirrored = ground();

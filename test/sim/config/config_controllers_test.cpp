@@ -57,7 +57,8 @@ TEST(ConfigControllers, ReadsDrives) {
   const ControllerConfig config =
       controllersOf(
           ", controllers: [{name: d, type: diff_drive, left_wheel: [a, b], right_wheel: c, wheel_separation: 0.5, wheel_radius: 0.1, "
-          "wheel_acceleration: 2, wheel_torque: 3, cmd_vel_timeout: 0.7, cmd_vel_topic: go, odom_topic: way, odom_frame_id: o, "
+          "wheel_separation_multiplier: 2, wheel_radius_multiplier: 0.5, wheel_acceleration: 2, wheel_torque: 3, cmd_vel_timeout: 0.7, "
+          "cmd_vel_topic: go, odom_topic: way, odom_frame_id: o, "
           "base_frame_id: base, publish_rate: off, enable_odom_tf: false, odometry_source: world, "
           "pose_covariance_diagonal: [1, 2, 3, 4, 5, 6], twist_covariance_diagonal: [6, 5, 4, 3, 2, 1]}]")
           ->front();
@@ -67,6 +68,8 @@ TEST(ConfigControllers, ReadsDrives) {
   EXPECT_EQ(config.drive.right, std::vector<std::string>{"c"});
   EXPECT_EQ(config.drive.wheel_separation, 0.5);
   EXPECT_EQ(config.drive.wheel_radius, 0.1);
+  EXPECT_EQ(config.drive.separation_multiplier, 2);
+  EXPECT_EQ(config.drive.radius_multiplier, 0.5);
   EXPECT_EQ(config.drive.wheel_acceleration, 2);
   EXPECT_EQ(config.drive.wheel_torque, 3);
   EXPECT_EQ(config.drive.cmd_vel_timeout, 0.7);
@@ -86,8 +89,8 @@ TEST(ConfigControllers, RefusesFaultyDrives) {
   const auto told = [](const std::string& drive) { return refusalOfList("{" + drive + "}"); };
   EXPECT_TRUE(isOneLineWith(told("name: d, type: diff_drive, right_wheel: b"), {"left_wheel", "missing"}));
   EXPECT_TRUE(isOneLineWith(told("name: d, type: diff_drive, left_wheel: []"), {"left_wheel", "list"}));
-  EXPECT_TRUE(isOneLineWith(told(wheels + ", wheel_radius: 0.1"), {"wheel_separation", "missing"}));
-  EXPECT_TRUE(isOneLineWith(told(wheels + ", wheel_separation: 0.4"), {"wheel_radius", "missing"}));
+  EXPECT_EQ(told(wheels), "") << "the URDF has their measures";
+  EXPECT_TRUE(isOneLineWith(told(wheels + ", wheel_radius_multiplier: 0"), {"wheel_radius_multiplier", "above 0"}));
   EXPECT_TRUE(isOneLineWith(told(wheels + ", wheel_separation: 0, wheel_radius: 0.1"), {"wheel_separation", "above 0"}));
   const std::string whole = wheels + ", wheel_separation: 0.4, wheel_radius: 0.1";
   EXPECT_TRUE(isOneLineWith(told(whole + ", odometry_source: stars"), {"odometry_source", "encoder"}));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "blem_sim/sim/state_file.h"
 #include "sim/controllers/rover.h"
 #include "support/input_errors.h"
 #include "support/input_notes.h"
@@ -214,9 +215,31 @@ TEST_F(DriveControllerTest, RefusesJointsThatCannotBeDriven) {
   EXPECT_TRUE(isOneLineWith(told_of("left_axel", "right_axle"), {"'drive'", "left_axel", "'left_axle'"}));
   EXPECT_TRUE(isOneLineWith(told_of("mount", "right_axle"), {"'drive'", "mount", "movable joint"}));
   EXPECT_TRUE(isOneLineWith(told_of("left_axle", "left_axle"), {"'drive'", "left_axle", "twice"}));
+}
+
+TEST_F(DriveControllerTest, TheUrdfHasMeasuresThatAreNotGiven) {
   ControllerConfig settings = driveConfig();
+  settings.drive.wheel_separation = settings.drive.wheel_radius = 0;
+  settings.drive.separation_multiplier = 1.5;
+  settings.drive.radius_multiplier = 2;
+  const DriveController drive(&simulator_, 0, settings);
+  EXPECT_NEAR(drive.config().drive.wheel_separation, 1.5 * ROVER_SEPARATION, 1e-15);
+  EXPECT_EQ(drive.config().drive.wheel_radius, 2 * ROVER_WHEEL);
+}
+
+TEST(DriveController, SaysWhichMeasureTheUrdfHasNot) {
+  SimulationConfig config = roverScene();
+  std::string& urdf = config.robots[0].urdf_xml;
+  for (const auto& [from, to] :
+       {std::make_pair("<sphere radius=\"0.1\"/>", "<box size=\"0.1 0.1 0.1\"/>"), std::make_pair("0 -0.2 0", "0 0.2 0")})
+    for (auto at = urdf.find(from); at != std::string::npos; at = urdf.find(from)) urdf.replace(at, std::string(from).size(), to);
+  Simulator simulator(config, model::UriResolver());
+  ControllerConfig settings = driveConfig();
+  settings.drive.wheel_radius = 0;
+  EXPECT_TRUE(isOneLineWith(refusal([&] { DriveController(&simulator, 0, settings); }), {"wheel_radius", "left_wheel", "<cylinder>"}));
+  settings = driveConfig();
   settings.drive.wheel_separation = 0;
-  EXPECT_TRUE(isOneLineWith(refusal([&] { DriveController(&simulator_, 0, settings); }), {"'drive'", "wheel_separation"}));
+  EXPECT_TRUE(isOneLineWith(refusal([&] { DriveController(&simulator, 0, settings); }), {"wheel_separation", "left_axle", "one place"}));
 }
 
 TEST_F(DriveControllerTest, WheelsThatWereResetAreItsAgain) {
@@ -234,19 +257,80 @@ TEST_F(DriveControllerTest, WheelsThatWereResetAreItsAgain) {
 TEST_F(DriveControllerTest, GoesOnFromASavedStateInTheMiddleOfARamp) {
   drive_.command({0.5, 0.4});
   runFor(0.2);
-  const SimulationState state = simulator_.save();
+  const SimulationState state = stateOf(stateBytes(simulator_.save()), "bytes");
+  const Stand saved = told();
   runFor(0.5);
   const std::uint64_t hash = simulator_.stateHash();
   const Stand before = told();
   simulator_.restore(state);
-  runFor(0.001);
-  EXPECT_NEAR(told().x, before.x, 1e-3) << "the wheels' way back is no way that they rolled";
-  runFor(0.499);
+  drive_.update();
+  expectStand(told(), saved, 0, 0);
+  runFor(0.5);
   EXPECT_EQ(simulator_.stateHash(), hash);
+  expectStand(told(), before, 0, 0);
   Simulator fresh(roverScene(), model::UriResolver());
   fresh.restore(state);
   stepFor(&fresh, 0.5);
   EXPECT_EQ(fresh.stateHash(), hash) << "the ramp is part of the state";
+}
+
+TEST_F(DriveControllerTest, ARestoredCommandEndsAtItsAge) {
+  ControllerConfig settings = driveConfig();
+  settings.drive.cmd_vel_timeout = 0.2;
+  settings.drive.wheel_acceleration = 0;
+  drive_ = DriveController(&simulator_, 0, settings);
+  drive_.start();
+  drive_.command({0.1, 0});
+  runFor(0.1);
+  const SimulationState state = simulator_.save();
+  runFor(0.3);
+  ASSERT_NEAR(wheelSpeed(0), 0, 1e-5);
+  Simulator fresh(roverScene(), model::UriResolver());
+  for (Simulator* simulator : {&simulator_, &fresh}) {
+    DriveController drive(simulator, 0, settings);
+    drive.start();
+    simulator->restore(state);
+    for (int i = 0; i < 99; ++i) {
+      simulator->step();
+      drive.update();
+    }
+    EXPECT_NEAR(simulator->report().joints[0].velocity, 0.1 / ROVER_WHEEL, 1e-5);
+    for (int i = 0; i < 100; ++i) {
+      simulator->step();
+      drive.update();
+    }
+    EXPECT_NEAR(simulator->report().joints[0].velocity, 0, 1e-5);
+  }
+}
+
+TEST_F(DriveControllerTest, AStateThatWasSavedWithoutItHasItsCommandsEnd) {
+  drive_.command({0.1, 0});
+  runFor(0.5);
+  SimulationState state = simulator_.save();
+  state.memories.clear();
+  EXPECT_TRUE(isOneLineWith(refusal([&] { simulator_.restore(state); }), {"cut short"})) << "the header knows of it";
+  drive_.stop();
+  drive_.start();
+  simulator_.driveJoints(0, {{"left_axle", "right_axle"}, {1, 1}, 0, 0});
+  simulator_.remember("rover", "drive", {});
+  state = simulator_.save();
+  ControllerConfig settings = driveConfig();
+  settings.drive.cmd_vel_timeout = 0.2;
+  drive_ = DriveController(&simulator_, 0, settings);
+  drive_.start();
+  simulator_.restore(state);
+  runFor(0.1);
+  EXPECT_NEAR(wheelSpeed(0), 1, 1e-4);
+  EXPECT_NEAR(told().x, 0.01, 2e-4);
+  runFor(0.3);
+  EXPECT_NEAR(wheelSpeed(0), 0, 1e-5);
+}
+
+TEST_F(DriveControllerTest, ARobotThatIsRemovedLeavesNoMemory) {
+  drive_.command({0.1, 0});
+  EXPECT_FALSE(simulator_.save().memories["rover"].empty());
+  simulator_.removeModel("rover");
+  EXPECT_TRUE(simulator_.save().memories.empty());
 }
 
 TEST(DriveController, ARecordOfItPlayedAgainGivesTheSameBits) {

@@ -134,7 +134,6 @@ TEST(GazeboDrives, ARobotLeavesTopicAndFrameToItsDrive) {
   Simulator simulator(roverScene(drivePlugin("diff_drive", WHEELS)), model::UriResolver());
   const RobotInfo& info = simulator.robots()[0];
   ASSERT_EQ(info.drives.size(), 1u);
-  EXPECT_TRUE(info.odom_tf);
   EXPECT_EQ(info.odom.topic, "ground_truth/odom");
   EXPECT_EQ(toldTimes(simulator.notes(), "/odom has the odometry of 'wheels'; the truth is on ground_truth/odom"), 1);
   EXPECT_EQ(toldTimes(simulator.notes(), "joints without gains"), 0) << "a wheel needs none";

@@ -380,5 +380,47 @@ TEST(GazeboSensor, NoMoreThanAThousand) {
   EXPECT_EQ(told(robot, "80 more faults"), 1) << allNotes(robot);
 }
 
+TEST(GazeboSensor, OneWithoutAPluginLeavesItsTopicToOneThatHasAPlugin) {
+  const GazeboRobot robot = described(
+      onLink(sensorBlock("imu", "<update_rate>7</update_rate>", "imu")) + "<gazebo>" +
+      plugin("imu", "<bodyName>tool</bodyName><topicName>imu</topicName><updateRate>50</updateRate>", "imu_plugin") + "</gazebo>");
+  ASSERT_EQ(robot.config.sensors.size(), 1u) << allNotes(robot);
+  EXPECT_EQ(robot.config.sensors[0].name, "imu_plugin");
+  EXPECT_EQ(robot.config.sensors[0].link, "tool");
+  EXPECT_EQ(robot.config.sensors[0].rate, 50);
+  EXPECT_EQ(told(robot, "sensor 'imu': sensor 'imu_plugin' has its topic imu; it is left out"), 1) << allNotes(robot);
+}
+
+TEST(GazeboSensor, AWholeTurnMayBeRounded) {
+  const GazeboRobot robot = described(onLink(
+      sensorBlock("ray",
+                  "<ray><scan><horizontal><samples>360</samples><min_angle>0.0</min_angle><max_angle>6.28319</max_angle></horizontal>"
+                  "<vertical><samples>3</samples><min_angle>-1.5708</min_angle><max_angle>1.5708</max_angle></vertical></scan></ray>")));
+  ASSERT_EQ(robot.config.sensors.size(), 1u) << allNotes(robot);
+  EXPECT_EQ(robot.config.sensors[0].rays.last_angle, 6.28319);
+  EXPECT_TRUE(described(onLink(sensorBlock("ray",
+                                           "<ray><scan><horizontal><samples>9</samples><min_angle>0</min_angle>"
+                                           "<max_angle>6.3</max_angle></horizontal></scan></ray>")))
+                  .config.sensors.empty());
+}
+
+TEST(GazeboMimic, APluginNeedsTheMimicOfItsJoint) {
+  const auto robot = [](const std::string& mimic, const std::string& inside) {
+    const std::string xml =
+        "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>"
+        "<joint name=\"lead\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint>"
+        "<joint name=\"follow\" type=\"continuous\"><parent link=\"a\"/><child link=\"c\"/>" +
+        mimic + "</joint><gazebo><plugin name=\"m\" filename=\"libroboticsgroup_gazebo_mimic_joint_plugin.so\">" + inside +
+        "</plugin></gazebo></robot>";
+    return withGazeboBlocks({}, model::loadUrdf(xml, "test.urdf", model::UriResolver()));
+  };
+  const std::string asked = "<joint>lead</joint><mimicJoint>follow</mimicJoint><multiplier>-0.5</multiplier><hasPID/>";
+  EXPECT_EQ(allNotes(robot("<mimic joint=\"lead\" multiplier=\"-0.5\"/>", asked)),
+            "<gazebo>: without effect here: hasPID; docs/gazebo_urdf.md says why\n");
+  EXPECT_EQ(told(robot("", asked), "has none: write <mimic joint=\"lead\" multiplier=\"-0.5\" offset=\"0\"/> into it"), 1);
+  EXPECT_EQ(told(robot("<mimic joint=\"lead\"/>", asked), "'follow' follows as its <mimic> says, and it has another one"), 1);
+  EXPECT_EQ(told(robot("", "<joint>lead</joint><mimicJoint>folow</mimicJoint>"), "the nearest is 'follow'"), 1);
+}
+
 }  // namespace
 }  // namespace blem_sim::sim

@@ -106,7 +106,8 @@ TriangleMesh movedShell(const TriangleMesh& mesh, const MeshTopology& topology, 
 
 std::vector<Marker> layerMarkers(const contact::Collider& collider, MarkerStyle style) {
   std::vector<Marker> markers;
-  if (collider.geometry->isHalfSpace() || !(collider.radius > 0)) return markers;
+  const bool ends_at_surface = collider.outside != nullptr;  // the layer lies inside, and its shell would flicker with what is drawn
+  if (collider.geometry->isHalfSpace() || !(collider.radius > 0) || ends_at_surface) return markers;
   style.colour = toColour(sim::mixed({style.colour.r, style.colour.g, style.colour.b}, SHELL_TINT, SHELL_TINTED));
   style.colour.a = SHELL_ALPHA;
   addTriangles(movedShell(collider.geometry->mesh(), collider.geometry->topology(), collider.radius), markerOf(collider, style), &markers);

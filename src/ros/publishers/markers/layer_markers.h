@@ -16,7 +16,10 @@ namespace blem_sim::node {
  */
 geometry::TriangleMesh movedShell(const geometry::TriangleMesh& mesh, const geometry::MeshTopology& topology, double r);
 
-/** The shell of a collider's triangles, translucent, of a colour between the style's and blue; none if it has none, or no width. */
+/**
+ * The shell of a collider's triangles, translucent, of a colour between the style's and blue; none if it has none, no width, or its layer
+ * inside.
+ */
 std::vector<visualization_msgs::Marker> layerMarkers(const contact::Collider& collider, MarkerStyle style);
 
 }  // namespace blem_sim::node
