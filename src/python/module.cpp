@@ -10,6 +10,7 @@
 #include "numbers_of.h"
 #include "python_config.h"
 #include "simulation.h"
+#include "simulation_clearance.h"
 
 namespace py = pybind11;
 using py::arg;
@@ -133,10 +134,28 @@ void addLoads(Class* simulator) {
   simulator->def("clear_wrenches", &Simulation::clearWrenches, arg("body"), "Ends all apply_wrench of a body.");
 }
 
+void addClearance(Class* simulator, const py::module_& module) {
+  py::class_<SimulationClearance> clearance(
+      module, "Clearance",
+      "A robot in any pose among the things around it, which stand as they stood when it was made, by\n"
+      "Simulator.clearance. Links that a joint joins, that disable_collisions lists, or that crossed each\n"
+      "other then are never told of. A link that is wholly inside a mesh is near nothing.");
+  clearance.attr("__module__") = "blem_sim";
+  clearance.def_property_readonly("links", &SimulationClearance::links, "Names of the robot's links, in the order of poses.");
+  clearance.def_property_readonly("colliders", &SimulationClearance::colliders, "'model::link' of the rows a and b of find.");
+  clearance.def(
+      "find", &SimulationClearance::find, arg("poses"), arg("distance"),
+      "Pairs with less than a distance [m] between their layers, were the links at these poses (N x 7: x y z, quaternion x y z w,\n"
+      "world). A structured array: a, b (rows of colliders, a of the robot), gap [m] (below 0: layers overlap), crossed (bare meshes\n"
+      "do, and the gap is rough), point [m], normal (from B to A).");
+  simulator->def("clearance", &Simulation::clearance, arg("robot"), "A Clearance of a robot, everything else being where it is now.");
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_simulator, module) {
   addContactType();
+  addApproachType();
   module.doc() = "Simulations of robots in contact with meshes and clouds; use it as blem_sim.";
   py::register_exception<InputError>(module, "InputError", PyExc_ValueError);
   module.attr("InputError").attr("__module__") = "blem_sim";
@@ -151,6 +170,7 @@ PYBIND11_MODULE(_simulator, module) {
   addState(&simulator);
   addCommands(&simulator);
   addLoads(&simulator);
+  addClearance(&simulator, module);
 }
 
 }  // namespace blem_sim::python

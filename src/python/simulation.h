@@ -16,6 +16,8 @@
 
 namespace blem_sim::python {
 
+class SimulationClearance;
+
 /** Tells numpy the fields of rows of Simulation::contacts; once, when the module is loaded. */
 void addContactType();
 
@@ -59,6 +61,7 @@ class Simulation {
   pybind11::array contacts();
   pybind11::dict sensors();
   std::vector<std::string> sensorFields(const std::string& sensor) const;
+  std::unique_ptr<SimulationClearance> clearance(const std::string& robot);
 
   void command(const std::string& robot, const CommandArguments& arguments);
   /** @param points velocities may be None; efforts are not taken @param start [s] simulated; 0: now */

@@ -1,4 +1,4 @@
-// Commands and loads by names.
+// Commands, loads and questions by names.
 #include <fmt/format.h>
 
 #include <limits>
@@ -7,6 +7,8 @@
 #include "blem_sim/sim/named_parts.h"
 #include "numbers_of.h"
 #include "simulation.h"
+#include "simulation_clearance.h"
+#include "thread_turn.h"
 
 namespace py = pybind11;
 
@@ -116,6 +118,11 @@ void Simulation::clearEfforts(const std::string& joint) {
 
 void Simulation::clearWrenches(const std::string& body) {
   change([&] { simulator_->clearLoads(bodyIndex(body)); });
+}
+
+std::unique_ptr<SimulationClearance> Simulation::clearance(const std::string& robot) {
+  const ThreadTurn turn(&turn_);
+  return std::make_unique<SimulationClearance>(sim::RobotClearance(*simulator_, robotOf(*simulator_, robot)));
 }
 
 }  // namespace blem_sim::python

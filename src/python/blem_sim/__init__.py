@@ -5,7 +5,7 @@ programs that want messages alone load no simulator.
 """
 import importlib
 
-__all__ = ["InputError", "STEP_STATUS", "Simulator"]
+__all__ = ["Clearance", "InputError", "STEP_STATUS", "Simulator"]
 
 
 def __getattr__(name):
