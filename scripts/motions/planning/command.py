@@ -6,8 +6,10 @@ import sys
 from sweeping.checked_yaml import InputError
 from sweeping.options import Parser
 
+from planning.clearance import Clearance
 from planning.motion_file import Motion
 from planning.planner import Planner
+from planning.posture_search import find_posture
 from planning.results import table, write_results
 from planning.robot_file import read_robot
 
@@ -26,6 +28,8 @@ def read_options(arguments):
     parser.add_argument("--out", metavar="FILE.csv", help="the trajectory (NAME.csv for NAME.yaml, in the current folder)")
     parser.add_argument("--report", metavar="FILE.json", help="the table's figures, and poses of root and contacts at the end of each phase")
     parser.add_argument("--config-out", metavar="FILE.yaml", help="CONFIG with the robot where the motion starts")
+    parser.add_argument("--find", metavar="PHASE", help="no plan: targets for the end of a phase, or for the 'start', at which joints bear least")
+    parser.add_argument("--tries", metavar="N", type=int, default=150, help="postures that --find looks at")
     parser.add_argument("--package", metavar="NAME=DIR", action="append", default=[], help="folder of a package, beside ROS_PACKAGE_PATH")
     options = parser.parse_args(arguments)
     options.packages = {}
@@ -46,7 +50,11 @@ def main(arguments):
     try:
         options = read_options(arguments)
         motion = Motion(options.motion)
-        planner = Planner(motion, read_robot(options.config, motion.robot, options.packages))
+        robot = read_robot(options.config, motion.robot, options.packages)
+        planner = Planner(motion, robot, Clearance(motion, robot, options.packages) if motion.clearance is not None else None)
+        if options.find is not None:
+            print("\n".join(find_posture(planner, options.find, options.tries)))
+            return FINE
         planner.plan()
         write_results(planner, options)
     except InputError as error:

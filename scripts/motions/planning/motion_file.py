@@ -4,7 +4,7 @@ import collections
 import numpy as np
 from sweeping.checked_yaml import Field, read_yaml
 
-KEYS = ("robot", "rate", "margin", "speed", "effort", "friction", "shift_duration", "body", "contacts", "holding", "start", "phases")
+KEYS = ("robot", "rate", "margin", "speed", "effort", "friction", "clearance", "shift_duration", "body", "contacts", "holding", "start", "phases")
 CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "friction", "force", "keeps")
 START_KEYS = ("contacts", "com", "height", "rpy", "joints")
 PHASE_KEYS = ("name", "duration", "com", "body", "move", "release", "joints")
@@ -42,6 +42,7 @@ class Motion:
         self.speed = within(root, "speed", 0.5, 0.01, 1)
         self.effort = within(root, "effort", 1.0, 0.01, 1)
         self.friction = within(root, "friction", 0.5, 0.01, 10)
+        self.clearance = within(root, "clearance", None, 0, 1)
         self.shift_duration = within(root, "shift_duration", 2.0, 0.01, LONGEST_PHASE)
         self.body = optional(root, "body", Field.text)
         contacts = root.below("contacts")

@@ -7,6 +7,7 @@ from kinematics import from_rpy
 from sweeping.checked_yaml import InputError
 
 from planning import support
+from planning.clearance import touching
 from planning.inverse_kinematics import joints_at_limits, reach
 from planning.motion_file import CentreTarget, Phase
 from planning.robot_model import ROOT_COORDINATES, Posture, rotation_vector
@@ -20,15 +21,15 @@ ROOM = 2                                 # margins that a shift before a phase l
 EFFORT_SAMPLES = 5                       # of a phase
 
 # One planned phase: its rows are PlacedRobots after those before. margin [m], speed and effort as shares of a joint's limit with its name; residual
-# [m] and [rad]; region: corners of the support; frames: {contact: (rotation, middle)} at the end.
-Planned = collections.namedtuple("Planned", "name duration holding margin speed effort residual region placed frames shares")
+# [m] and [rad]; gap: a Gap or None; region: corners of the support; frames: {contact: (rotation, middle)} at the end.
+Planned = collections.namedtuple("Planned", "name duration holding margin speed effort gap residual region placed frames shares")
 
 
 class Planner:
     """Plans the phases of a motion one after the other. Raises InputError, in one line, where one is not possible."""
 
-    def __init__(self, motion, robot):
-        self.motion, self.robot, self.model = motion, robot, robot.model
+    def __init__(self, motion, robot, clearance=None):
+        self.motion, self.robot, self.model, self.clearance = motion, robot, robot.model, clearance
         self.body = motion.body or self.model.links[0]
         self.check_names()
         used = self.model.joints_between([contact.link for contact in motion.contacts.values()] + [self.body])
@@ -72,10 +73,11 @@ class Planner:
                 if value:
                     self.motion.field(phase.path, None).refuse("the robot's base is fixed; leave '%s' out" % key)
 
-    def plan(self):
-        """The planned phases. self.start is where the motion begins."""
+    def plan(self, count=None):
+        """The planned phases, so many or all of them. self.start is where the motion begins."""
         if self.motion.start:
-            self.go_to_start()
+            self.go_to_start(self.motion.start)
+            self.check_body(phase_of_start(self.motion.start))
         self.start, self.start_frames = self.placed, dict(self.frames)
         if not self.model.fixed:
             region = self.region(self.holding, "the start")
@@ -83,7 +85,7 @@ class Planner:
             if margin < self.motion.margin - REACHED_M:
                 self.refuse("the start", "the centre of mass is %s the support of %s, margin is %g mm; write start: {com: {over: [%s]}}, or a smaller"
                             " margin" % (beside(margin), ", ".join(self.holding), 1e3 * self.motion.margin, ", ".join(self.holding)))
-        for phase in self.motion.phases:
+        for phase in self.motion.phases[:count]:
             self.plan_phase(phase)
         return self.planned
 
@@ -127,18 +129,29 @@ class Planner:
     # -- phases
 
     def plan_phase(self, phase):
-        leaving = [name for name in phase.ways if name in self.holding] + [name for name in phase.release if name in self.holding]
-        during = [name for name in self.holding if name not in leaving]
+        during, region = self.begin(phase)
+        self.follow(phase, during, region)
+        self.holding = self.held_after(phase, during)
+
+    def staying(self, phase, holding):
+        """Those of the contacts that hold which a phase does not take off."""
+        return [name for name in holding if name not in phase.ways and name not in phase.release]
+
+    def held_after(self, phase, during):
+        return during + [name for name, way in phase.ways.items() if way.lands]
+
+    def begin(self, phase):
+        """(contacts that hold during a phase, their support), the centre of mass being over them."""
+        during = self.staying(phase, self.holding)
         region = None
         if not self.model.fixed:
             region = self.region(during, phase.name)
-            if leaving and support.region_margin(region, self.placed.centre_of_mass[:2]) < self.motion.margin:
+            if len(during) < len(self.holding) and support.region_margin(region, self.placed.centre_of_mass[:2]) < self.motion.margin:
                 self.shift(during, phase)
                 region = self.region(during, phase.name)
         for name in phase.release:
             self.frames.pop(name, None)
-        self.follow(phase, during, region)
-        self.holding = during + [name for name, way in phase.ways.items() if way.lands]
+        return during, region
 
     def shift(self, holding, phase):
         """A phase before another: the centre of mass goes over what will hold."""
@@ -162,7 +175,8 @@ class Planner:
         for contact, _ in tasks.ways:
             self.frames[contact.name] = frame_of(self.placed, contact)
         effort = self.largest_effort(phase.name, during, [start] + placed)
-        self.planned.append(Planned(phase.name, duration, during, margin, speed, effort, (max([0.0] + [each.metres for each in residuals]),
+        gap = self.least_gap(phase, during, placed, duration)
+        self.planned.append(Planned(phase.name, duration, during, margin, speed, effort, gap, (max([0.0] + [each.metres for each in residuals]),
                             max([0.0] + [each.radians for each in residuals])), region, placed, dict(self.frames), shares))
 
     def tasks(self, phase, during, region):
@@ -268,15 +282,27 @@ class Planner:
                         " contacts hold" % (joint, 100 * share, 100 * self.motion.effort))
         return share, joint
 
+    def least_gap(self, phase, during, placed, duration):
+        """The Gap of a phase, None if nothing comes near; a refusal where it is smaller than the motion's clearance."""
+        if self.clearance is None:
+            return None
+        gap, too_small = self.clearance.along(placed, lambda k: touching(self.model, self.motion.contacts, during, phase, (k + 1) / len(placed)))
+        if too_small:
+            share = (gap.sample + 1) / len(placed)
+            self.refuse(phase.name, "link '%s' comes within %.1f mm of '%s' at %d %% of the phase (%.2f s of the motion), clearance is %g mm; lift it"
+                        " higher, turn the body or its contacts away, or move joints" % (gap.link, 1e3 * gap.metres, gap.other, round(100 * share),
+                        sum(each.duration for each in self.planned) + share * duration, 1e3 * self.clearance.wanted))
+        return gap
+
     def lowest_contact(self, during):
         heights = [point.position[2] for point in self.points(during, self.placed)]
         return min(heights) if heights else None
 
     # -- the start
 
-    def go_to_start(self):
-        """Brings the robot to the posture that the motion's start describes."""
-        start, model = self.motion.start, self.model
+    def go_to_start(self, start, rounds=START_ROUNDS):
+        """Brings the robot to the posture that a motion's start describes."""
+        model = self.model
         joints = self.placed.posture.joints.copy()
         for name, value in start.joints.items():
             joints[model.joint_names.index(name)] = value
@@ -292,16 +318,16 @@ class Planner:
         for name in self.holding:
             if self.motion.contacts[name].link not in stands:
                 ways.append((self.motion.contacts[name], still(frame_of(self.placed, self.motion.contacts[name]))))
-        self.solve_start(ways, start)
+        self.solve_start(ways, start, rounds)
         self.frames = {name: frame_of(self.placed, self.motion.contacts[name]) for name in list(self.frames) + list(start.contacts)}
         self.home = self.placed.posture.joints.copy()
         self.take_body()
 
-    def solve_start(self, ways, start):
+    def solve_start(self, ways, start, rounds):
         """First the contacts and the body; then, from there, the centre of mass."""
         free = self.free.copy()
         free[[ROOT_COORDINATES + self.model.joint_names.index(name) for name in start.joints]] = False
-        phase = Phase("start", "the start", 0.0, start.com, start.body, {}, [], {})
+        phase = phase_of_start(start)
         for centre in (False, True):
             self.aim_body(start.body)
             position = self.placed.link(self.body)[1]
@@ -311,10 +337,14 @@ class Planner:
                 target = self.centre_target(phase, self.holding, self.region(self.holding, phase.name))
                 target = Between(target, target)
             tasks = PhaseTasks(ways, target, body, Between(self.home, self.home), free)
-            posture = reach(self.model, self.placed.posture, lambda each: tasks.ranks(each, 1.0), free, START_ROUNDS)
+            posture = reach(self.model, self.placed.posture, lambda each: tasks.ranks(each, 1.0), free, rounds)
             self.placed = self.model.place(posture)
             self.check_reached(tasks, self.placed, 1.0, phase)
-        self.check_body(phase)
+
+
+def phase_of_start(start):
+    """What a start asks for, as a phase that takes no time."""
+    return Phase("start", "the start", 0.0, start.com, start.body, {}, [], {})
 
 
 def still(frame):

@@ -10,7 +10,9 @@ import yaml
 from sweeping.checked_yaml import InputError, read_yaml
 from trajectory_file import write_trajectory
 
-HEADINGS = ("phase", "s", "margin mm", "speed %", "effort %", "residual mm", "mrad")
+from planning.robot_model import quaternion
+
+HEADINGS = ("phase", "s", "margin mm", "speed %", "effort %", "gap mm", "residual mm", "mrad")
 
 
 def rows_of(planner):
@@ -26,22 +28,11 @@ def table(planner):
     for phase in planner.planned:
         margin = "-" if phase.margin is None else "%.1f" % (1e3 * phase.margin)
         speed, effort = ["%.0f %s" % (100 * share, joint or "") for share, joint in (phase.speed, phase.effort)]
-        cells.append((phase.name, "%.2f" % phase.duration, margin, speed, effort, "%.3f" % (1e3 * phase.residual[0]), "%.3f" % (1e3 * phase.residual[1])))
+        gap = "-" if phase.gap is None else "%.1f %s" % (1e3 * phase.gap.metres, phase.gap.link)
+        cells.append((phase.name, "%.2f" % phase.duration, margin, speed, effort, gap, "%.3f" % (1e3 * phase.residual[0]), "%.3f" % (1e3 * phase.residual[1])))
     widths = [max(len(row[k]) for row in cells) for k in range(len(HEADINGS))]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in cells]
     return lines + ["%d phases, %.2f s" % (len(planner.planned), sum(phase.duration for phase in planner.planned))]
-
-
-def quaternion(rotation):
-    """x, y, z, w of a rotation matrix, w not negative."""
-    m = np.asarray(rotation)
-    w = 0.5 * math.sqrt(max(0.0, 1 + m[0, 0] + m[1, 1] + m[2, 2]))
-    parts = [0.5 * math.sqrt(max(0.0, 1 + 2 * m[k, k] - np.trace(m))) for k in range(3)]
-    if w > 1e-3:
-        signs = (m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1])
-        return [math.copysign(part, sign) for part, sign in zip(parts, signs)] + [w]
-    largest = int(np.argmax(parts))
-    return [math.copysign(part, m[largest, k] if k != largest else 1.0) for k, part in enumerate(parts)] + [w]
 
 
 def pose_of(rotation, position):
@@ -61,6 +52,7 @@ def report(planner):
         phases.append({
             "name": phase.name, "duration_s": phase.duration, "holding": phase.holding, "margin_m": phase.margin,
             "speed": {"share": phase.speed[0], "joint": phase.speed[1]}, "effort": {"share": phase.effort[0], "joint": phase.effort[1]},
+            "gap": None if phase.gap is None else {"m": phase.gap.metres, "link": phase.gap.link, "other": phase.gap.other},
             "residual": {"m": phase.residual[0], "rad": phase.residual[1]},
             "support": None if phase.region is None else [[float(x) for x in corner] for corner in phase.region],
             "end": moment(planner, phase.placed[-1], phase.frames)})

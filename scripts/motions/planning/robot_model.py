@@ -3,6 +3,8 @@
 Coordinates of a robot are the six of its root (velocity of the root link's origin and angular velocity, in the world) and then its joints
 without those that mimic others. Units are m, rad, kg; poses are in the world.
 """
+import math
+
 import numpy as np
 
 ROOT_COORDINATES = 6
@@ -51,6 +53,18 @@ def rotation_vector(matrix):
     v = 0.5 * np.array([matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]])
     sine, cosine = float(np.linalg.norm(v)), 0.5 * (np.trace(matrix) - 1)
     return v if sine < 1e-12 else v * (np.arctan2(sine, cosine) / sine)
+
+
+def quaternion(rotation):
+    """x, y, z, w of a rotation matrix, w not negative."""
+    m = np.asarray(rotation)
+    w = 0.5 * math.sqrt(max(0.0, 1 + m[0, 0] + m[1, 1] + m[2, 2]))
+    parts = [0.5 * math.sqrt(max(0.0, 1 + 2 * m[k, k] - np.trace(m))) for k in range(3)]
+    if w > 1e-3:
+        signs = (m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1])
+        return [math.copysign(part, sign) for part, sign in zip(parts, signs)] + [w]
+    largest = int(np.argmax(parts))
+    return [math.copysign(part, m[largest, k] if k != largest else 1.0) for k, part in enumerate(parts)] + [w]
 
 
 class RobotModel:
@@ -118,6 +132,17 @@ class RobotModel:
         """Coordinates of the joints, ROOT_COORDINATES not counted, that lie between the root and any of these links."""
         rows = self.moves[:, [self.links.index(link) for link in links]].any(axis=1)
         return [column for column in range(len(self.joint_names)) if (self.coupling[rows, column] != 0).any()]
+
+    def links_below(self, link):
+        """A link and all that hangs on it."""
+        if link == self.links[0]:
+            return self.links
+        return [self.links[column] for column in np.flatnonzero(self.moves[self.links.index(link) - 1])]
+
+    def joints_apart(self, link, other):
+        """How many joints that move lie between two links."""
+        a, b = [self.moves[:, self.links.index(name)] for name in (link, other)]
+        return int(((a != b) & (self.coupling != 0).any(axis=1)).sum())
 
     def place(self, posture):
         """Where everything is in a posture."""
