@@ -59,7 +59,8 @@ FIGURES = {
     7: of_method("time against the number of contacts", "mean 10 ms generation, 2 ms clustering, 25 ms response", {
         "timing": ("contacts grow tenfold, 20 kept at most, none crosses; times stated", timing_case)},
                  lambda folder: plates(folder.resolve(), 16), 0.1, None, plot="timing.png"),
-    8: of_paper("Hubo on a ladder", "climbs it dynamically (motion not published)", ["hubo_ladder", "hubo_ladder_fall"], "ladder", ["hubo_ladder"], "huboplus"),
+    8: of_paper("Hubo on a ladder", "climbs it dynamically (motion not published)", ["hubo_ladder", "hubo_ladder_fall", "hubo_ladder_climb"],
+                "ladder", ["hubo_ladder"], "huboplus"),
     9: of_paper("foot forces while Hubo shifts onto its left foot", "simulation close to theory", ["hubo_sway", "hubo_sway_servo_i"], "sway",
                 ["hubo_plane"], "huboplus", plot="forces.png"),
     10: of_paper("Atlas on hands and feet on fractal terrain", "the same pose after three minutes", ["atlas_fractal", "atlas_fractal_servo_i"],

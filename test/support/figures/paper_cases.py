@@ -268,6 +268,7 @@ CASES = {
     "hubo_ladder": (WHOLE_ASKED, on_its_own("hubo_ladder", 3.0, start=0.5)),
     "hubo_ladder_fall": (WHOLE_ASKED + "; begins before the ladder, leaning back on its heels, and falls onto it",
                          on_its_own("hubo_ladder", 6.0, pose={"xyz": [0.248, -0.00247315, 1.0], "rpy": [0.0, -0.25, 0.0]})),
+    "hubo_ladder_climb": (CLIMB_ASKED, climbs("hubo_ladder", "hubo_up_a_ladder", pose={"xyz": [0.02, 0.4, 1.0], "rpy": [0, 0, 1.57]})),
     "hubo_stepladder": (WHOLE_ASKED, on_its_own("paper_hubo_stepladder_150k", 10.0)),
     "hubo_stepladder_climb": (CLIMB_ASKED, climbs("paper_hubo_stepladder_150k", "hubo_up_a_stepladder")),
     "hubo_chair": (WHOLE_ASKED, on_its_own("paper_hubo_chair_150k", 3.0)),
