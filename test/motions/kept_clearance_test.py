@@ -75,12 +75,23 @@ def test_a_posture_at_the_start_is_found(case, capsys):
     motion = changed(STEPS, start=start, phases=STEPS["phases"][:1])
     targets, words = found_targets(case, capsys, motion, "start")
     motion["start"].update({"com": targets["com"], "height": targets["body"]["height"], "rpy": targets["body"]["rpy"]})
-    assert case.plan(WORLD, motion)["phases"][0]["margin_m"] > 0 and "not reached" not in words
+    assert case.plan(WORLD, motion)["phases"][0]["margin_m"] > 0 and "effort" in words
 
 
 def test_an_unknown_phase_is_refused(case, capsys):
     assert main([str(WORLD), str(case.write("motion.yaml", STEPS)), "--find", "leap"]) == 2
     assert "there is no phase 'leap'" in capsys.readouterr().err
+
+
+def test_contacts_that_no_posture_reaches_are_refused(case, capsys):
+    motion = changed(STEPS, phases=[{"name": "far", "duration": 2, "move": {"right": {"by": [3, 0, 0]}}}])
+    assert main([str(WORLD), str(case.write("motion.yaml", motion)), "--find", "far", "--tries", "3"]) == 2
+    assert "none of 3 postures reaches the contacts" in capsys.readouterr().err
+
+
+def test_no_tries_are_refused(case, capsys):
+    assert main([str(WORLD), str(case.write("motion.yaml", STEPS)), "--find", "start", "--tries", "0"]) == 2
+    assert "--tries" in capsys.readouterr().err
 
 
 if __name__ == "__main__":

@@ -40,6 +40,8 @@ def read_options(arguments):
         options.packages[name] = str(pathlib.Path(folder).resolve())
     if options.out is None:
         options.out = pathlib.Path(options.motion).stem + ".csv"
+    if options.tries < 1:
+        raise InputError("--tries: %d postures cannot be tried; give 1 or more" % options.tries)
     if options.config_out and options.config.endswith((".urdf", ".xml")):
         raise InputError("--config-out goes with a configuration, %s is a URDF; leave it out" % options.config)
     return options

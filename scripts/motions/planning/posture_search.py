@@ -29,19 +29,22 @@ class PostureSearch:
         self.random = np.random.RandomState(0)
 
     def find(self, solved, first):
-        """(targets, words) of the best try. @param solved function of targets that gives a PlacedRobot, or refuses
-        @param first the targets that the search begins with: x, y of the centre of mass, height, roll, pitch, yaw, joints"""
+        """(targets, words) of the best try. Raises InputError if none is reached. @param solved function of targets that gives a PlacedRobot and
+        what it misses [m or rad], or refuses @param first the targets that the search begins with: x, y of the centre of mass, height, roll, pitch, yaw, joints"""
         spreads = np.array([SPREAD_M] * 2 + [SPREAD_HEIGHT] + [SPREAD_RAD] * (3 + len(self.joints)))
-        best, least, placed, words = np.asarray(first, float), math.inf, None, "nothing that was tried can be reached"
+        best, least, placed, words = np.asarray(first, float), math.inf, None, ""
         for tried in range(self.tries):
             spread = SPREADS[3 * tried // self.tries]
             targets = self.bounded(best + (spread * spreads * self.random.standard_normal(len(spreads)) if tried else 0.0))
             cost, there, said = self.cost(solved, targets)
             if cost < least:
                 best, least, placed, words = targets, cost, there, said
-        for _ in range(SETTLED if least < math.inf else 0):
+        for _ in range(SETTLED):
+            if least >= MISSED:
+                raise InputError("%s: --find: none of %d postures reaches the contacts; bring them nearer, or try more (--tries)"
+                                 % (self.planner.motion.file, self.tries))
             best = targets_met(self.planner, placed, self.joints)
-            _, placed, words = self.cost(solved, best)
+            least, placed, words = self.cost(solved, best)
         return best, words
 
     def bounded(self, targets):
@@ -69,7 +72,7 @@ class PostureSearch:
         if gap and gap[3]:
             cost += SHORT * (1 + max(0.0, planner.clearance.wanted - gap[0]) / 0.01)
         near = "nothing near" if gap is None else "%.1f mm from '%s' to '%s'" % (1e3 * gap[0], gap[1], gap[2])
-        return cost, placed, "effort %.0f %% (%s), margin %.1f mm, %s" % (100 * share, joint, 1e3 * margin, near + (", not reached" if missed else ""))
+        return cost, placed, "effort %.0f %% (%s), margin %.1f mm, %s" % (100 * share, joint, 1e3 * margin, near)
 
 
 def links_of(planner, names):
@@ -152,6 +155,8 @@ def find_start(planner, tries):
 def find_posture(planner, name, tries):
     """Lines that tell targets for a phase of a name, or the start, and what they come to. Raises InputError for others."""
     motion = planner.motion
+    if planner.model.fixed:
+        raise InputError("%s: --find: the robot's base is fixed; leave it out" % motion.file)
     if name == START and motion.start:
         return find_start(planner, tries)
     names = [phase.name for phase in motion.phases]
