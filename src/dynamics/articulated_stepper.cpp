@@ -12,10 +12,10 @@
 #include "island/island_motion.h"
 #include "island/island_readings.h"
 #include "island/island_wrenches.h"
-#include "island/step_islands.h"
 #include "island/tree_state.h"
 #include "kept_trees.h"
 #include "problem/contact_work.h"
+#include "step_islands.h"
 
 namespace blem_sim::dynamics {
 namespace {

@@ -1,4 +1,4 @@
-#include "island/step_islands.h"
+#include "step_islands.h"
 
 #include "scene/contact_motion.h"
 
