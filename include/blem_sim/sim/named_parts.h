@@ -25,7 +25,7 @@ std::optional<LinkPart> findFrame(const Simulator& simulator, const std::string&
 
 /** All links of a model, the root link first. */
 std::vector<LinkPart> linksOf(const Simulator& simulator, int model);
-/** Whether gravity does not act on a link, as its <gazebo> block says. */
+/** Whether gravity does not act on a link, as the Gazebo block of its URDF says. */
 bool isWeightless(const Simulator& simulator, const LinkPart& part);
 /** A part's name without its model's. */
 std::string withoutModel(const std::string& name);
