@@ -36,6 +36,10 @@ class IslandSweeps {
     response_.freeVelocity(momentum_, velocity);
     joints_.pushMotors(response_, velocity);
   }
+  /** Adds the work of joint friction, limits and loops. @param free_velocity, velocity without and with all impulses */
+  void addJointWork(const Eigen::VectorXd& free_velocity, const Eigen::VectorXd& velocity, ImpulseWork* work) const {
+    joints_.addWork(response_, free_velocity, velocity, work);
+  }
   /** Multiplies all impulses by a factor. @param velocity with these impulses, out */
   void scale(double factor, Eigen::VectorXd* velocity);
 

@@ -40,23 +40,24 @@ double SweptIsland::adoptImpulses() {
   return newton_->adopt();
 }
 
-// Kinetic energy that the contacts' impulses add to that of free motion, correction of depth left out. Exact impulses never add any.
-// Precondition: adoptImpulses.
-SweptIsland::ImpulseWork SweptIsland::impulseWork() {
+// Kinetic energy that impulses of contacts, joint friction, limits and loops add to that of free motion, correction of errors left out. All
+// exact impulses together never add any; those of some may, where others take more. Precondition: adoptImpulses.
+ImpulseWork SweptIsland::impulseWork() {
   ImpulseWork work;
-  sweeps_.freeVelocity(&island_->space->direction);
-  newton_->setSteps(island_->space->direction);
+  const Eigen::VectorXd& velocity = island_->space->velocity;
+  Eigen::VectorXd* free_velocity = &island_->space->direction;
+  sweeps_.freeVelocity(free_velocity);
+  newton_->setSteps(*free_velocity);
   const IslandContacts& contacts = newton_->iterate().reactions().contacts();
   contacts.forEach([&](int contact, std::size_t block, int lane) {
     const ContactTerm& term = island_->terms()->contacts[contact];
     const ContactBlock& b = contacts.blocks()[block];
     for (int axis = 0; axis < 3; ++axis) {
-      const double g = b.impulse[axis][lane], after = b.velocity[axis][lane], free = b.step[axis][lane] + term.bend[axis];
-      work.gained += 0.5 * g * (after + free) - g * std::max(0.0, term.target) * term.normal[axis];
-      work.exchanged += 0.5 * std::abs(g * (after + free));
-      work.change += g * (after - free);
+      const double g = b.impulse[axis][lane], correction = g * std::max(0.0, term.target) * term.normal[axis];
+      work.add(g, b.step[axis][lane] + term.bend[axis], b.velocity[axis][lane], correction);
     }
   });
+  sweeps_.addJointWork(*free_velocity, velocity, &work);
   return work;
 }
 

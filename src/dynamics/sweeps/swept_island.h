@@ -2,6 +2,7 @@
 #pragma once
 
 #include "newton/newton_loop.h"
+#include "sweeps/impulse_work.h"
 #include "sweeps/island_sweeps.h"
 
 namespace blem_sim::dynamics {
@@ -28,12 +29,6 @@ class SweptIsland {
   void freeVelocity(Eigen::VectorXd* velocity) { sweeps_.freeVelocity(velocity); }
 
  private:
-  /** Work [J] of the contacts' impulses, at the mean of the velocities with and without them. */
-  struct ImpulseWork {
-    double gained = 0;     // by the bodies, without correcting depth
-    double exchanged = 0;  // sum without signs
-    double change = 0;     // impulses times the change of velocities that they make
-  };
   double adoptImpulses();
   ImpulseWork impulseWork();
 

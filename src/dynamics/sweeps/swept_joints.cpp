@@ -57,6 +57,12 @@ void SweptJoints::AxisRow::scale(double factor) {
   for (double* impulse : {&dry, &lower, &upper}) *impulse *= factor;
 }
 
+void SweptJoints::AxisRow::addWork(const JointTerm& joint, double free, double after, ImpulseWork* work) const {
+  work->add(dry, free, after, 0);
+  if (lower > 0) work->add(lower, free, after, lower * std::max(0.0, joint.lower_velocity));
+  if (upper > 0) work->add(-upper, free, after, upper * std::max(0.0, -joint.upper_velocity));
+}
+
 void SweptJoints::AxisRow::lead(const SweepLead& lead) {
   double* of = before;
   for (double* impulse : {&motor, &dry, &lower, &upper}) lead.move(impulse, impulse + 1, of++);
@@ -196,6 +202,20 @@ void SweptJoints::scale(double factor) {
   for (LoopRow& row : loop_rows_) {
     row.impulse *= factor;
     row.axis.scale(factor);
+  }
+}
+
+void SweptJoints::addWork(const IslandResponse& response, const Eigen::VectorXd& free_velocity, const Eigen::VectorXd& velocity,
+                          ImpulseWork* work) const {
+  for (const JointRow& row : joint_rows_)
+    row.axis.addWork(island_->terms()->joints[row.term], free_velocity[row.dof], velocity[row.dof], work);
+  for (std::size_t l = 0; l < loop_rows_.size(); ++l) {
+    const LoopRow& row = loop_rows_[l];
+    const LoopTerm& loop = island_->terms()->loops[l];
+    const Vector6 free = loop.basis.transpose() * response.relativeTwist(row.pair, free_velocity);
+    const Vector6 after = loop.basis.transpose() * response.relativeTwist(row.pair, velocity);
+    for (int r = 0; r < loop.rows; ++r) work->add(row.impulse[r], free[r], after[r], std::max(0.0, row.impulse[r] * loop.target[r]));
+    if (loop.rows < 6) row.axis.addWork(loop.drive, free[5], after[5], work);
   }
 }
 

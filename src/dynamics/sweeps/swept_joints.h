@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "problem/island_at_hand.h"
+#include "sweeps/impulse_work.h"
 #include "sweeps/sweep_lead.h"
 #include "trees/island_response.h"
 
@@ -33,6 +34,9 @@ class SweptJoints {
   void pushMotors(const IslandResponse& response, Eigen::VectorXd* velocity) const;
   /** Multiplies all impulses but those of motors. */
   void scale(double factor);
+  /** Adds the work of all impulses but those of motors. @param free_velocity,velocity by dof, without and with all impulses */
+  void addWork(const IslandResponse& response, const Eigen::VectorXd& free_velocity, const Eigen::VectorXd& velocity,
+               ImpulseWork* work) const;
   /** Takes motors that have left the piece of their law that was folded as swept, and folds those that are swept but at no bound.
    *  @return whether there were none, so that motors do exactly what their laws say */
   bool motorsAgree(const Eigen::VectorXd& velocity);
@@ -52,6 +56,7 @@ class SweptJoints {
     /** Visits all of them at a velocity. @return change of their sum */
     double visit(const JointTerm& joint, bool has_motor, double v);
     void scale(double factor);
+    void addWork(const JointTerm& joint, double free, double after, ImpulseWork* work) const;
     void lead(const SweepLead& lead);
     /** Proximal points of friction and limits. */
     void read(double v, JointTerm* joint) const;
