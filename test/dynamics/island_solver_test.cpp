@@ -230,6 +230,19 @@ TEST(SweptIsland, SolvesWithMotorsAtTheirBounds) { expectAsSolved({0.1, -10, 0})
 // By a rounding inside its bound, friction would be said to stick.
 TEST(SweptIsland, SolvesWithFrictionThatSlips) { expectAsSolved({0.1, -10, 0.01}); }
 
+/** A chain whose motors push its joints against their limits. Without the limits it would fly apart, and its box off the ground. */
+struct LimitedChain : DrivenChain {
+  explicit LimitedChain(double velocity) : DrivenChain(500, velocity, 0) {
+    for (JointTerm& joint : answer.terms.joints) joint.limit_gain = 10;
+  }
+};
+
+// Contacts alone may gain, where limits take more.
+TEST(SweptIsland, SolvesWithMotorsThatPushAgainstLimits) {
+  expectAsSolved(LimitedChain(1000));
+  expectAsSolved(LimitedChain(-1000));
+}
+
 TEST(Island, TermsAreMadeAnewInEveryStepAndItsModelTellsOfJoints) {
   ChainOnBox chain(3, 0.01);
   const TermSource source{chain.scene, chain.forest, chain.motion, chain.input, chain.settings, chain.memory};
