@@ -55,6 +55,18 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
                                            std::pair(265, 1.0), std::pair(3937, 0.25), std::pair(5694, 0.3), std::pair(8854, 0.35),
                                            std::pair(9600, 0.1), std::pair(41328, 0.14), std::pair(86531, 0.2)));
 
+// A gram wedged in a small heap of things of up to 780 kg creeps beyond what sweeps and their polish leave: proximal steps go on.
+TEST(WedgedInAHeap, HardlyAnyStepIsInTrouble) {
+  SceneOutcome outcome;
+  outcome.seed = 200178;
+  const RandomScene scene = randomScene(outcome.seed);
+  runRandomScene(scene, SANITIZED ? 0.05 : 1, &outcome);
+  expectSound(outcome, scene);
+  int trouble = 0;
+  while (1 << trouble != SOLVER_TROUBLE) ++trouble;
+  EXPECT_LT(outcome.bits[trouble], 20);
+}
+
 void expectSoundWhateverHappens(std::uint64_t seed, bool live = false) {
   SceneOutcome outcome;
   const RandomScene scene = randomScene(seed);

@@ -71,7 +71,7 @@ NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
 
 void IslandSolver::recoverFromFaults(const NewtonSettings& settings, NewtonReport* report) {
   const std::vector<ContactTerm>& contacts = found_.terms.contacts;
-  const double most = island_->model.isSwept() ? faults(*report, contacts) : faultsWithCreep(*report, contacts);
+  const double most = island_->model.isSweptCrowd() ? faults(*report, contacts) : faultsWithCreep(*report, contacts);
   if (most > 1) last_resort_.recover(*island_, {&swept_, &newton_, &steps_}, settings, report);
 }
 

@@ -19,7 +19,7 @@ void LastResort::recover(const IslandAtHand& island, const IslandWays& ways, con
   best_.take(island);
   least_ = faultsWithCreep(*report, island.terms()->contacts);
   const bool sweeps = faults(*report, island.terms()->contacts) > 1;
-  if (!island.model.isSwept()) goOn(island, ways, settings, report);
+  if (!island.model.isSweptCrowd()) goOn(island, ways, settings, report);
   if (sweeps && least_ > 1) sweep(island, ways, settings, report);
   best_.put(island);
   report->gradient = ways.newton->adopt();

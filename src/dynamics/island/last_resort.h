@@ -18,10 +18,10 @@ struct IslandWays {
 class LastResort {
  public:
   /**
-   * Unless the island is swept anyhow, proximal steps go on from where its iterations ended, with slips that move by ever less of what they
-   * are off. Then sweeps from the last step's impulses, and from none; each time Newton's method goes on from what they found. The result
-   * of sweeps balances momentum and adds no energy to free motion. The result of the smallest faults is taken: one of these, or the one
-   * found before. If it has faults even so, the island's energy is bounded. Contacts that creep and nothing else are not swept.
+   * Unless the island is a crowd that is swept, proximal steps go on from where its iterations ended, with slips that move by ever less of
+   * what they are off. Then sweeps from the last step's impulses, and from none; each time Newton's method goes on from what they found.
+   * The result of sweeps balances momentum and adds no energy to free motion. The result of the smallest faults is taken: one of these, or
+   * the one found before. If it has faults even so, the island's energy is bounded. Contacts that creep and nothing else are not swept.
    * @param report of what was found before
    */
   void recover(const IslandAtHand& island, const IslandWays& ways, const NewtonSettings& settings, NewtonReport* report);

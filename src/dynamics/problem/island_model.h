@@ -48,6 +48,8 @@ struct IslandModel {
   /** Whether robots are among so many bodies that it is swept while these tumble. */
   bool isMixedHeap() const;
   bool isSwept() const { return isHeap() || isMixedHeap(); }
+  /** Whether it is swept and so large that Newton's method does not go on from what sweeps leave of creep. */
+  bool isSweptCrowd() const { return isSwept() && isCrowd(); }
   /** Whether its Hessian takes long to factor: as long as dozens of sweeps. */
   bool isCrowd() const;
   /** [N s] A push that no load needs: it would make the whole island ten times as fast as depth is corrected. @param speed [m/s] of that */
