@@ -52,7 +52,7 @@ class DriveController {
 
  private:
   const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
-  /** What it keeps from step to step, in the simulator's memory. */
+  /** Memory of the drive from step to step, which the simulator keeps. */
   struct Memory {
     double steps = 0;         ///< when update was called last
     double command_time = 0;  ///< [s]

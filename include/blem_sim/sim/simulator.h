@@ -167,7 +167,7 @@ class Simulator {
    * of it, as no step depends on it. Empty: nothing is kept.
    */
   void remember(const std::string& robot, const std::string& controller, const std::vector<double>& memory);
-  /** What remember was told last, or the restored state had; empty: nothing. */
+  /** The memory that remember was told last, or that the restored state had; empty: nothing. */
   std::vector<double> memory(const std::string& robot, const std::string& controller) const;
 
   SimulationState save() const;

@@ -184,7 +184,7 @@ struct StateHeader {
   std::uint64_t checksum = 0;  ///< of layout and content
 };
 
-/** What controllers keep from step to step, by robot and controller; no step depends on it. */
+/** Memories of controllers from step to step, by robot and controller; no step depends on them. */
 using ControllerMemories = std::map<std::string, std::map<std::string, std::vector<double>>>;
 
 /** Everything a simulation needs to replay bit for bit: world, motors, trajectories, sensors, random generators, contact memory. */

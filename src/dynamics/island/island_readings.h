@@ -1,4 +1,4 @@
-// What a solved island tells of the step: forces of its contacts, efforts of its joints.
+// Readings of a solved island: forces of its contacts, efforts of its joints.
 #pragma once
 
 #include <vector>

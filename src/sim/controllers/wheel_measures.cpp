@@ -16,7 +16,7 @@ const model::JointModel& axleOf(const ControllerConfig& controller, const std::s
   return robot.joints[joint];
 }
 
-/** Of a joint's frame in the root link, all joints being at 0. */
+/** Place [m] of a joint's frame in the root link, all joints at 0. */
 Vector3 axlePlace(const model::JointModel& axle, const model::RobotModel& robot) {
   Vector3 place = axle.X_PJ.translation();
   for (int link = axle.parent; link != robot.root;) {
