@@ -29,6 +29,9 @@ PROVIDERS = {
     r"\bboost::make_shared\b": ["boost/make_shared.hpp"],
 }
 
+# A function of a header of the tests: its name has two words, so that it is nobody's variable.
+TEST_FUNCTION = re.compile(r"^inline [^(;={]*?\b([a-z]+[A-Z]\w*)\(", re.MULTILINE)
+
 
 def included(path, seen):
     """Names of all headers that a file includes, those of our own headers too."""
@@ -64,3 +67,29 @@ def test_the_rule_sees_what_is_missing():
     assert missing("// std::vector<int>", set()) == []
     assert missing("TEST(A, b) {}", {"vector"}) == ["gtest/gtest.h"]
     assert missing("for (const int n : {1, 2})", {"csignal"}) == ["initializer_list"]
+
+
+def unknown(code, functions, known):
+    """Those of the tests' functions that `code` calls and that neither it nor the `known` texts declare."""
+    return [name for name in functions if re.search(r"(?<![\w.>:])%s\(" % name, code)
+            and not any(re.search(r"(?!return|else)\b\w[\w>&*]* [&*]?%s\(" % name, text) for text in [code] + known)]
+
+
+def test_files_include_the_headers_of_the_tests_whose_functions_they_call():
+    texts = {path: COMMENT.sub(" ", path.read_text()) for path in sources("include", "src", "test")}
+    functions = sorted({name for path in sources("test") if path.suffix == ".h" for name in TEST_FUNCTION.findall(texts[path])})
+    assert len(functions) > 100
+    wrong = []
+    for path in sources("test"):
+        seen = {path}
+        included(path, seen)
+        wrong += ["%s calls %s" % (path.relative_to(ROOT), name)
+                  for name in unknown(texts[path], functions, [texts[file.resolve()] for file in seen])]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_rule_sees_a_function_of_a_header_that_is_not_included():
+    assert unknown("narrowPhase(searchRoom());", ["searchRoom"], ["int other();"]) == ["searchRoom"]
+    assert unknown("narrowPhase(searchRoom());", ["searchRoom"], ["inline Room* searchRoom() {}"]) == []
+    assert unknown("return searchRoom();", ["searchRoom"], []) == ["searchRoom"]
+    assert unknown("narrowPhase(my.searchRoom());", ["searchRoom"], []) == []
