@@ -13,7 +13,7 @@
 
 namespace blem_sim::contact {
 
-inline Collider makeCollider(geometry::TriangleMesh mesh, double radius) {
+inline Collider makeCollider(geometry::TriangleMesh mesh, double radius = 0) {
   Collider collider;
   collider.geometry = std::make_shared<CollisionGeometry>(std::make_shared<geometry::TriangleMesh>(std::move(mesh)));
   collider.radius = radius;

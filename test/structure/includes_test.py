@@ -1,4 +1,5 @@
 """Every file includes what it uses of the headers that some builds precompile (cmake/compile_time.cmake), by itself or by headers of ours."""
+import functools
 import re
 
 from source_files import INCLUDE, ROOT, sources
@@ -32,14 +33,23 @@ PROVIDERS = {
 # A function of a header of the tests: its name has two words, so that it is nobody's variable.
 TEST_FUNCTION = re.compile(r"^inline [^(;={]*?\b([a-z]+[A-Z]\w*)\(", re.MULTILINE)
 
+# A type of ours of two words.
+TYPE = re.compile(r"^(?:class|struct|enum class) ([A-Z][a-z]+[A-Z]\w*)(?: final)?(?: : [^;{]*)?\s*\{", re.MULTILINE)
+
+
+@functools.lru_cache(maxsize=None)
+def included_names(path):
+    return INCLUDE.findall(path.read_text())
+
 
 def included(path, seen):
     """Names of all headers that a file includes, those of our own headers too."""
     names = set()
-    for name in INCLUDE.findall(path.read_text()):
+    for name in included_names(path):
         names.add(name)
         room = path.relative_to(ROOT).parts
-        places = [path.parent, ROOT / "include", ROOT / "test", ROOT / "src" / "ros"] + [ROOT / "src" / part for part in room[1:2]]
+        places = [path.parent] + [ROOT / place for place in ("include", "test", "src/ros", "src/tools", "src/tools/common")] + [
+            ROOT / "src" / part for part in room[1:2]]
         for own in (place / name for place in places):
             if own.is_file() and own not in seen:
                 seen.add(own)
@@ -69,27 +79,45 @@ def test_the_rule_sees_what_is_missing():
     assert missing("for (const int n : {1, 2})", {"csignal"}) == ["initializer_list"]
 
 
-def unknown(code, functions, known):
+def is_test(path):
+    return path.relative_to(ROOT).parts[0] == "test"
+
+
+def unknown_functions(code, functions, known):
     """Those of the tests' functions that `code` calls and that neither it nor the `known` texts declare."""
-    return [name for name in functions if re.search(r"(?<![\w.>:])%s\(" % name, code)
+    called = set(re.findall(r"(?<![\w.>:])(\w+)\(", code))
+    return [name for name in functions if name in called
             and not any(re.search(r"(?!return|else)\b\w[\w>&*]* [&*]?%s\(" % name, text) for text in [code] + known)]
 
 
-def test_files_include_the_headers_of_the_tests_whose_functions_they_call():
+def unknown_types(code, types, known):
+    """Those of our types that `code` names outside of tests' names and that neither it nor the `known` texts declare."""
+    named = set(re.findall(r"(?<![\w.>:])[A-Z]\w+", re.sub(r"^TEST.*$", "", code, flags=re.MULTILINE)))
+    return [name for name in types if name in named
+            and not any(re.search(r"(?:class|struct|using) %s\b" % name, text) for text in [code] + known)]
+
+
+def test_files_include_the_headers_of_ours_that_they_use():
     texts = {path: COMMENT.sub(" ", path.read_text()) for path in sources("include", "src", "test")}
-    functions = sorted({name for path in sources("test") if path.suffix == ".h" for name in TEST_FUNCTION.findall(texts[path])})
-    assert len(functions) > 100
+    headers = [path for path in texts if path.suffix == ".h"]
+    functions = sorted({name for path in headers if is_test(path) for name in TEST_FUNCTION.findall(texts[path])})
+    types = sorted({name for path in headers for name in TYPE.findall(texts[path])})
+    assert len(functions) > 100 and len(types) > 500
     wrong = []
-    for path in sources("test"):
+    for path, code in texts.items():
         seen = {path}
         included(path, seen)
-        wrong += ["%s calls %s" % (path.relative_to(ROOT), name)
-                  for name in unknown(texts[path], functions, [texts[file.resolve()] for file in seen])]
+        known = [texts[file.resolve()] for file in seen]
+        unknown = unknown_types(code, types, known) + (unknown_functions(code, functions, known) if is_test(path) else [])
+        wrong += ["%s does not include %s" % (path.relative_to(ROOT), name) for name in unknown]
     assert not wrong, "\n".join(wrong)
 
 
-def test_the_rule_sees_a_function_of_a_header_that_is_not_included():
-    assert unknown("narrowPhase(searchRoom());", ["searchRoom"], ["int other();"]) == ["searchRoom"]
-    assert unknown("narrowPhase(searchRoom());", ["searchRoom"], ["inline Room* searchRoom() {}"]) == []
-    assert unknown("return searchRoom();", ["searchRoom"], []) == ["searchRoom"]
-    assert unknown("narrowPhase(my.searchRoom());", ["searchRoom"], []) == []
+def test_the_rule_sees_what_is_not_included():
+    assert unknown_functions("narrowPhase(searchRoom());", ["searchRoom"], ["int other();"]) == ["searchRoom"]
+    assert unknown_functions("narrowPhase(searchRoom());", ["searchRoom"], ["inline Room* searchRoom() {}"]) == []
+    assert unknown_functions("return searchRoom();", ["searchRoom"], []) == ["searchRoom"]
+    assert unknown_functions("narrowPhase(my.searchRoom());", ["searchRoom"], []) == []
+    assert unknown_types("void run(SimulationLoop* loop);", ["SimulationLoop"], ["class Simulator {"]) == ["SimulationLoop"]
+    assert unknown_types("void run(SimulationLoop* loop);", ["SimulationLoop"], ["class SimulationLoop;"]) == []
+    assert unknown_types("TEST(SimulationLoop, Runs) {", ["SimulationLoop"], []) == []

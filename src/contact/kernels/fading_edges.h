@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kernels/candidate_kernels.h"
+#include "kernels/edge_records.h"
 
 namespace blem_sim::contact::kernels {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "loop/root_frames.h"
+#include "loop/simulation_loop.h"
 #include "messages/message_pool.h"
 #include "sending/greeting_publisher.h"
 #include "sending/publish_schedule.h"
