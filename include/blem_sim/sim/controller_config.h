@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,6 +21,14 @@ struct JointConstraint {
 
 enum class ControllerKind { TRAJECTORY, GRIPPER, DRIVE };
 
+/** Limits of a part of a drive's twist, of both signs; infinite: none. Units as that part's: [m] or [rad]. */
+struct SpeedLimits {
+  static constexpr double NONE = std::numeric_limits<double>::infinity();
+  double min_velocity = -NONE, max_velocity = NONE;          ///< [1/s]
+  double min_acceleration = -NONE, max_acceleration = NONE;  ///< [1/s^2]
+  double min_jerk = -NONE, max_jerk = NONE;                  ///< [1/s^3]
+};
+
 /** Settings of a drive: a robot on wheels that turns by letting the left ones roll otherwise than the right ones. */
 struct DriveConfig {
   enum class Odometry { ENCODER, WORLD };
@@ -27,6 +36,7 @@ struct DriveConfig {
   double wheel_separation = 0;           ///< [m] between the middles of left and right wheels; 0: as the URDF has them
   double wheel_radius = 0;               ///< [m] at which they roll; 0: that of the first left wheel's cylinder or sphere
   double separation_multiplier = 1, radius_multiplier = 1;  ///< factors of calibration
+  SpeedLimits linear, angular;                              ///< of the twists that are driven
   double wheel_acceleration = 0;                            ///< [m/s^2] of each wheel's rim; 0: any
   double wheel_torque = 0;                                  ///< [N m] of each wheel's motor at most, beside its own limit; 0: that alone
   double cmd_vel_timeout = 0.5;                             ///< [s] simulated after the last command, when the wheels stop; 0: never

@@ -23,8 +23,8 @@ struct DriveOdometry {
 };
 
 /**
- * Turns twists into velocities of wheels, which their motors keep as exactly as their efforts allow. Each wheel's rim comes to its speed
- * at wheel_acceleration. Commands come between two steps.
+ * Turns twists into velocities of wheels, which their motors keep as exactly as their efforts allow. Twists change within their limits,
+ * each wheel's rim at wheel_acceleration at most. Commands come between two steps.
  */
 class DriveController {
  public:
@@ -52,18 +52,19 @@ class DriveController {
 
  private:
   const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
-  /** Memory of the drive from step to step, which the simulator keeps. */
-  struct Memory {
-    double steps = 0;         ///< when update was called last
-    double command_time = 0;  ///< [s]
-    double moves = 0;         ///< 1: the command is to move
-    double x = 0, y = 0, heading = 0;
-  };
-  /** That of the present step if there is none. */
+  struct Memory;
+  /** A drive that stands still since the present step. */
+  Memory atRest() const;
+  /** The simulator's memory; if there is none, that the drive begins now. */
   Memory recall() const;
   void keep(const Memory& memory);
   /** The wheels stop, and the encoder's odometry begins here. */
   void restart();
+  /** Takes a wanted twist. @throws InputError: nothing is changed then */
+  void want(const DriveTwist& twist, Memory* memory);
+  /** Speeds of a step later. */
+  void changeSpeeds(Memory* memory) const;
+  /** Turns the wheels, from the next step on. */
   void drive(const DriveTwist& twist);
   /** Whether motors of wheels have a velocity to keep. */
   bool isCommanded() const;

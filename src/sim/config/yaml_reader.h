@@ -24,6 +24,7 @@ struct NumberRange {
   static NumberRange any() { return {}; }
   static NumberRange positive() { return {0, std::numeric_limits<double>::max(), true, "a finite number above 0"}; }
   static NumberRange notNegative() { return {0, std::numeric_limits<double>::max(), false, "a finite number of at least 0"}; }
+  static NumberRange notPositive() { return {-std::numeric_limits<double>::max(), 0, false, "a finite number of at most 0"}; }
   static NumberRange positiveOrInfinite() { return {0, std::numeric_limits<double>::infinity(), true, "a number above 0, or .inf"}; }
   static NumberRange notNegativeOrInfinite() {
     return {0, std::numeric_limits<double>::infinity(), false, "a number of at least 0, or .inf"};

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/link_motion.h"
 #include "controllers/controlled_joints.h"
+#include "controllers/limited_speed.h"
 #include "controllers/wheel_measures.h"
 
 namespace blem_sim::sim {
@@ -31,7 +33,27 @@ std::vector<int> wheelsOf(const RobotInfo& robot, const ControllerConfig& config
   return controlledJoints(robot, config);
 }
 
+constexpr std::size_t MEMORY_SIZE = 12;
+
 }  // namespace
+
+/** What the drive keeps from step to step, in the simulator. */
+struct DriveController::Memory {
+  double steps = 0;         ///< when update was called last
+  double command_time = 0;  ///< [s]
+  double moves = 0;         ///< 1: the command is to move
+  double x = 0, y = 0, heading = 0;
+  DriveTwist wanted;
+  LimitedSpeed linear, angular;  ///< of the step before
+
+  static Memory from(const std::array<double, MEMORY_SIZE>& n) {
+    return {n[0], n[1], n[2], n[3], n[4], n[5], {n[6], n[7]}, {n[8], n[9]}, {n[10], n[11]}};
+  }
+  std::array<double, MEMORY_SIZE> numbers() const {
+    return {steps,         command_time,        moves, x, y, heading, wanted.linear, wanted.angular, linear.speed, linear.acceleration,
+            angular.speed, angular.acceleration};
+  }
+};
 
 DriveController::DriveController(Simulator* simulator, int robot, ControllerConfig config)
     : simulator_(simulator),
@@ -58,18 +80,31 @@ void DriveController::stop() {
 }
 
 DriveController::Memory DriveController::recall() const {
-  const std::vector<double> n = simulator_->memory(robot_, config_.name);
-  const bool sound = n.size() == 6 && std::all_of(n.begin(), n.end(), [](double number) { return std::isfinite(number); });
-  if (sound) return {n[0], n[1], n[2], n[3], n[4], n[5]};
-  return {static_cast<double>(simulator_->steps()), simulator_->time(), isCommanded() ? 1.0 : 0.0, 0, 0, 0};
+  const std::vector<double> kept = simulator_->memory(robot_, config_.name);
+  std::array<double, MEMORY_SIZE> numbers{};
+  if (kept.size() == numbers.size() && std::all_of(kept.begin(), kept.end(), [](double number) { return std::isfinite(number); })) {
+    std::copy(kept.begin(), kept.end(), numbers.begin());
+    return Memory::from(numbers);
+  }
+  Memory memory = atRest();
+  memory.moves = isCommanded() ? 1 : 0;
+  return memory;
 }
 
 void DriveController::keep(const Memory& memory) {
-  simulator_->remember(robot_, config_.name, {memory.steps, memory.command_time, memory.moves, memory.x, memory.y, memory.heading});
+  const auto numbers = memory.numbers();
+  simulator_->remember(robot_, config_.name, {numbers.begin(), numbers.end()});
+}
+
+DriveController::Memory DriveController::atRest() const {
+  Memory memory;
+  memory.steps = static_cast<double>(simulator_->steps());
+  memory.command_time = simulator_->time();
+  return memory;
 }
 
 void DriveController::restart() {
-  keep({static_cast<double>(simulator_->steps()), simulator_->time(), 0, 0, 0, 0});
+  keep(atRest());
   drive({});
 }
 
@@ -78,11 +113,24 @@ void DriveController::command(const DriveTwist& twist) {
   for (const auto& [field, number] : {std::make_pair("linear.x", twist.linear), std::make_pair("angular.z", twist.angular)})
     if (!isCommand(number))
       throw InputError(fmt::format("twist: {}: is {}; give a finite number within {:g}", field, number, LARGEST_COMMAND));
-  drive(twist);
   Memory memory = recall();
+  want(twist, &memory);
   memory.command_time = simulator_->time();
   memory.moves = twist.linear != 0 || twist.angular != 0;
   keep(memory);
+}
+
+void DriveController::want(const DriveTwist& twist, Memory* memory) {
+  memory->wanted = {allowedSpeed(twist.linear, config_.drive.linear), allowedSpeed(twist.angular, config_.drive.angular)};
+  Memory next = *memory;
+  changeSpeeds(&next);
+  drive({next.linear.speed, next.angular.speed});
+}
+
+void DriveController::changeSpeeds(Memory* memory) const {
+  const double dt = simulator_->config().time_step;
+  memory->linear = speedAfterStep(memory->linear, memory->wanted.linear, config_.drive.linear, dt);
+  memory->angular = speedAfterStep(memory->angular, memory->wanted.angular, config_.drive.angular, dt);
 }
 
 void DriveController::drive(const DriveTwist& twist) {
@@ -102,13 +150,16 @@ void DriveController::update() {
   if (isTakenOver()) return restart();
   Memory memory = recall();
   // A state that is restored has the memory of its own step: its wheels have not rolled to where they are.
-  if (static_cast<double>(simulator_->steps()) == memory.steps + 1) roll(&memory);
+  if (static_cast<double>(simulator_->steps()) == memory.steps + 1) {
+    roll(&memory);
+    changeSpeeds(&memory);
+  }
   memory.steps = static_cast<double>(simulator_->steps());
   const double timeout = config_.drive.cmd_vel_timeout;
-  if (timeout > 0 && memory.moves != 0 && simulator_->time() > memory.command_time + timeout - SAME_AGE) {
-    memory.moves = 0;
-    drive({});
-  }
+  const bool ends = timeout > 0 && memory.moves != 0 && simulator_->time() > memory.command_time + timeout - SAME_AGE;
+  if (ends) memory.moves = 0;
+  const DriveTwist wanted = ends ? DriveTwist{} : memory.wanted;
+  if (ends || memory.linear.speed != wanted.linear || memory.angular.speed != wanted.angular) want(wanted, &memory);
   keep(memory);
 }
 

@@ -144,6 +144,18 @@ class DriveTest(unittest.TestCase):
         self.assertEqual(self.parents_of("second/base_link", tf), {"world"})
         self.assertTrue(rospy.ServiceProxy(manager + "unload_controller", UnloadController)("loaded").ok)
 
+    def test_limits_of_the_parameter_server_hold(self):
+        manager = "/second/controller_manager/"
+        switch = rospy.ServiceProxy(manager + "switch_controller", SwitchController)
+        self.assertTrue(rospy.ServiceProxy(manager + "load_controller", LoadController)("limited").ok)
+        self.assertTrue(switch(["limited"], [NAME], 2, False, 0).ok)
+        odometry = self.listen("/second/limited/odom", Odometry)
+        self.drive("/second/limited/cmd_vel", SPEED, 0)
+        self.assertAlmostEqual(self.run_to(odometry, 400).twist.twist.linear.x, 0.2, delta=0.011)
+        self.assertAlmostEqual(self.run_to(odometry, 400).twist.twist.linear.x, 0.3, delta=1e-3)
+        self.assertTrue(switch([NAME], ["limited"], 2, False, 0).ok)
+        self.assertTrue(rospy.ServiceProxy(manager + "unload_controller", UnloadController)("limited").ok)
+
     def test_no_stamp_comes_twice_after_resets_at_the_beginning(self):
         tf = self.listen("/tf", TFMessage)
         sim_client.reset_simulation()

@@ -84,6 +84,36 @@ TEST(ConfigControllers, ReadsDrives) {
   EXPECT_EQ(config.drive.twist_covariance[1], 5);
 }
 
+TEST(ConfigControllers, ReadsLimitsOfTwists) {
+  const DriveConfig drive =
+      controllersOf(
+          ", controllers: [{name: d, type: diff_drive, left_wheel: a, right_wheel: b, "
+          "linear: {x: {has_velocity_limits: true, max_velocity: 1, min_velocity: -0.5, has_acceleration_limits: true, "
+          "max_acceleration: 3}}, "
+          "angular: {z: {has_velocity_limits: false, max_velocity: 2, has_jerk_limits: true, max_jerk: 20, min_jerk: -40}}}]")
+          ->front()
+          .drive;
+  EXPECT_EQ(drive.linear.max_velocity, 1);
+  EXPECT_EQ(drive.linear.min_velocity, -0.5);
+  EXPECT_EQ(drive.linear.max_acceleration, 3);
+  EXPECT_EQ(drive.linear.min_acceleration, -3) << "left out";
+  EXPECT_EQ(drive.linear.max_jerk, SpeedLimits::NONE);
+  EXPECT_EQ(drive.angular.max_velocity, SpeedLimits::NONE) << "switched off";
+  EXPECT_EQ(drive.angular.max_jerk, 20);
+  EXPECT_EQ(drive.angular.min_jerk, -40);
+}
+
+TEST(ConfigControllers, RefusesFaultyLimitsOfTwists) {
+  const auto told = [](const std::string& limits) {
+    return refusalOfList("{name: d, type: diff_drive, left_wheel: a, right_wheel: b, linear: {x: {" + limits + "}}}");
+  };
+  EXPECT_EQ(told("has_velocity_limits: false"), "");
+  EXPECT_TRUE(isOneLineWith(told("has_velocity_limits: true"), {"linear.x.max_velocity", "missing", "false"}));
+  EXPECT_TRUE(isOneLineWith(told("max_velocity: -1"), {"linear.x.max_velocity", "at least 0"}));
+  EXPECT_TRUE(isOneLineWith(told("min_acceleration: 1"), {"linear.x.min_acceleration", "at most 0"}));
+  EXPECT_TRUE(isOneLineWith(told("max_speed: 1"), {"max_speed", "unknown"}));
+}
+
 TEST(ConfigControllers, RefusesFaultyDrives) {
   const std::string wheels = "name: d, type: diff_drive, left_wheel: a, right_wheel: b";
   const auto told = [](const std::string& drive) { return refusalOfList("{" + drive + "}"); };

@@ -115,6 +115,53 @@ TEST_F(DriveControllerTest, WheelsSpeedUpAsTheAccelerationLetsThem) {
   EXPECT_NEAR(wheelSpeed(0), 0.05 * ACCELERATION / ROVER_WHEEL, 1e-4) << "from what it was, not from rest";
 }
 
+TEST_F(DriveControllerTest, TwistsChangeWithinTheirLimits) {
+  ControllerConfig settings = driveConfig();
+  settings.drive.wheel_acceleration = 0;
+  settings.drive.linear = {-0.2, 0.4, -2, 1, -SpeedLimits::NONE, SpeedLimits::NONE};
+  settings.drive.angular = {-1, 1, -0.5, 0.5, -SpeedLimits::NONE, SpeedLimits::NONE};
+  drive_ = DriveController(&simulator_, 0, settings);
+  drive_.start();
+  const auto expectTwist = [&](double linear, double angular) {
+    EXPECT_NEAR(drive_.odometry().v_OB.x(), linear, 1e-5);
+    EXPECT_NEAR(drive_.odometry().w_OB.z(), angular, 1e-4);
+  };
+  drive_.command({3, 0.2});
+  drive_.command({3, 0.2});
+  runFor(0.3);
+  expectTwist(0.3, 0.15);
+  runFor(0.3);
+  expectTwist(0.4, 0.2);
+  drive_.command({-1, 0.2});
+  runFor(0.25);
+  expectTwist(-0.1, 0.2);
+  const SimulationState state = simulator_.save();
+  runFor(0.2);
+  expectTwist(-0.2, 0.2);
+  const std::uint64_t hash = simulator_.stateHash();
+  simulator_.restore(state);
+  drive_.update();
+  runFor(0.2);
+  EXPECT_EQ(simulator_.stateHash(), hash) << "the change goes on where it was saved";
+  drive_.stop();
+  runFor(0.05);
+  expectTwist(0, 0);
+}
+
+TEST_F(DriveControllerTest, ACommandsEndKeepsTheLimits) {
+  ControllerConfig settings = driveConfig();
+  settings.drive.wheel_acceleration = 0;
+  settings.drive.cmd_vel_timeout = 0.2;
+  settings.drive.linear.min_acceleration = -1;
+  drive_ = DriveController(&simulator_, 0, settings);
+  drive_.start();
+  drive_.command({0.3, 0});
+  runFor(0.3);
+  EXPECT_NEAR(drive_.odometry().v_OB.x(), 0.2, 1e-3);
+  runFor(0.3);
+  EXPECT_NEAR(drive_.odometry().v_OB.x(), 0, 1e-5);
+}
+
 TEST(DriveController, WheelsAreNoStrongerThanTheirTorque) {
   SimulationConfig config = roverScene();
   config.environments.clear();

@@ -1,11 +1,9 @@
 // <gazebo> blocks of drives: what becomes of them, and what is told of the rest.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "blem_sim/sim/drive_controller.h"
-#include "gazebo/gazebo_robot.h"
 #include "sim/controllers/rover.h"
+#include "sim/gazebo/described_robot.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -20,11 +18,6 @@ const char* const WHEELS =
 
 GazeboRobot roverWith(const std::string& blocks, const RobotConfig& config = {}) {
   return withGazeboBlocks(config, model::loadUrdf(roverUrdf(blocks), "test.urdf", model::UriResolver()));
-}
-
-int toldTimes(const std::vector<std::string>& notes, const std::string& words) {
-  const auto has = [&](const std::string& note) { return note.find(words) != std::string::npos && note.find('\n') == std::string::npos; };
-  return static_cast<int>(std::count_if(notes.begin(), notes.end(), has));
 }
 
 TEST(GazeboDrives, ADiffDriveIsRead) {

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "config/config_sections.h"
+
+namespace blem_sim::sim {
+
+namespace {
+
+const std::vector<std::string> DRIVE_KEYS = {"left_wheel",
+                                             "right_wheel",
+                                             "wheel_separation",
+                                             "wheel_radius",
+                                             "wheel_separation_multiplier",
+                                             "wheel_radius_multiplier",
+                                             "linear",
+                                             "angular",
+                                             "wheel_acceleration",
+                                             "wheel_torque",
+                                             "cmd_vel_timeout",
+                                             "cmd_vel_topic",
+                                             "odom_topic",
+                                             "odom_frame_id",
+                                             "base_frame_id",
+                                             "publish_rate",
+                                             "enable_odom_tf",
+                                             "odometry_source",
+                                             "pose_covariance_diagonal",
+                                             "twist_covariance_diagonal"};
+
+/** One name or a list of them. */
+void readWheels(YamlReader& reader, const std::string& key, std::vector<std::string>* wheels) {
+  const YAML::Node given = reader.node(key);
+  const std::string wanted = "must be a wheel's joint, or a list of them: [front, rear]";
+  if (!given.IsDefined() && !wheels->empty()) return;
+  if (!given.IsDefined()) reader.refuse(key, "is missing; name the joints of the wheels on that side");
+  wheels->clear();
+  if (given.IsScalar()) return wheels->push_back(given.Scalar());
+  if (!given.IsSequence() || given.size() == 0) reader.refuse(key, wanted);
+  for (const auto& wheel : given) {
+    if (!wheel.IsScalar()) reader.refuse(key, wanted);
+    wheels->push_back(wheel.Scalar());
+  }
+}
+
+void readCovariance(YamlReader& reader, const std::string& key, std::array<double, 6>* diagonal) {
+  const auto numbers = reader.numbers(key, diagonal->size());
+  if (!numbers) return;
+  if (*std::min_element(numbers->begin(), numbers->end()) < 0) reader.refuse(key, "has a number below 0; variances are 0 at least");
+  std::copy(numbers->begin(), numbers->end(), diagonal->begin());
+}
+
+void readDriveOdometry(YamlReader& reader, DriveConfig* drive) {
+  reader.read("odom_topic", &drive->odom_topic);
+  reader.read("odom_frame_id", &drive->odom_frame);
+  reader.read("base_frame_id", &drive->base_frame);
+  if (drive->odom_frame.empty()) reader.refuse("odom_frame_id", "is empty; leave it out, or give it a name");
+  reader.readRate("publish_rate", &drive->publish_rate);
+  reader.read("enable_odom_tf", &drive->enable_odom_tf);
+  if (const auto source = reader.choice("odometry_source", {"encoder", "world"}))
+    drive->source = static_cast<DriveConfig::Odometry>(*source);
+  readCovariance(reader, "pose_covariance_diagonal", &drive->pose_covariance);
+  readCovariance(reader, "twist_covariance_diagonal", &drive->twist_covariance);
+}
+
+/** A limit's two ends; the lower one is minus the upper one if it is left out. Both are read, whether they hold or not. */
+void readLimit(YamlReader& reader, const std::string& name, double* lower, double* upper) {
+  bool holds = false;
+  std::optional<double> least, most;
+  reader.read("has_" + name + "_limits", &holds);
+  reader.read("max_" + name, &most, NumberRange::notNegative());
+  reader.read("min_" + name, &least, NumberRange::notPositive());
+  if (!holds) return;
+  if (!most) reader.refuse("max_" + name, "is missing; give it, or has_" + name + "_limits: false");
+  *upper = *most;
+  *lower = least.value_or(-*most);
+}
+
+/** Limits of one part of twists, as diff_drive_controller has them. */
+void readLimits(YamlReader& controller, const std::string& part, const std::string& axis, SpeedLimits* limits) {
+  YamlReader twist = controller.section(part);
+  YamlReader reader = twist.section(axis);
+  readLimit(reader, "velocity", &limits->min_velocity, &limits->max_velocity);
+  readLimit(reader, "acceleration", &limits->min_acceleration, &limits->max_acceleration);
+  readLimit(reader, "jerk", &limits->min_jerk, &limits->max_jerk);
+  reader.finish();
+  twist.finish();
+}
+
+}  // namespace
+
+void readDrive(YamlReader& reader, ControllerConfig* config) {
+  DriveConfig& drive = config->drive;
+  readWheels(reader, "left_wheel", &drive.left);
+  readWheels(reader, "right_wheel", &drive.right);
+  config->joints = drive.left;
+  config->joints.insert(config->joints.end(), drive.right.begin(), drive.right.end());
+  reader.read("wheel_separation", &drive.wheel_separation, NumberRange::positive());
+  reader.read("wheel_radius", &drive.wheel_radius, NumberRange::positive());
+  reader.read("wheel_separation_multiplier", &drive.separation_multiplier, NumberRange::positive());
+  reader.read("wheel_radius_multiplier", &drive.radius_multiplier, NumberRange::positive());
+  readLimits(reader, "linear", "x", &drive.linear);
+  readLimits(reader, "angular", "z", &drive.angular);
+  reader.read("wheel_acceleration", &drive.wheel_acceleration, NumberRange::notNegative());
+  reader.read("wheel_torque", &drive.wheel_torque, NumberRange::notNegative());
+  reader.read("cmd_vel_timeout", &drive.cmd_vel_timeout, NumberRange::notNegative());
+  reader.read("cmd_vel_topic", &drive.command_topic);
+  readDriveOdometry(reader, &drive);
+}
+
+const std::vector<std::string>& driveKeys() { return DRIVE_KEYS; }
+
+std::string commandTopic(const ControllerConfig& drive) {
+  return drive.drive.command_topic.empty() ? drive.name + "/cmd_vel" : drive.drive.command_topic;
+}
+
+std::string odometryTopic(const ControllerConfig& drive) {
+  return drive.drive.odom_topic.empty() ? drive.name + "/odom" : drive.drive.odom_topic;
+}
+
+}  // namespace blem_sim::sim
