@@ -78,7 +78,7 @@ void readLimit(YamlReader& reader, const std::string& name, double* lower, doubl
 }
 
 /** Limits of one part of twists, as diff_drive_controller has them. */
-void readLimits(YamlReader& controller, const std::string& part, const std::string& axis, SpeedLimits* limits) {
+void readTwistLimits(YamlReader& controller, const std::string& part, const std::string& axis, SpeedLimits* limits) {
   YamlReader twist = controller.section(part);
   YamlReader reader = twist.section(axis);
   readLimit(reader, "velocity", &limits->min_velocity, &limits->max_velocity);
@@ -100,8 +100,8 @@ void readDrive(YamlReader& reader, ControllerConfig* config) {
   reader.read("wheel_radius", &drive.wheel_radius, NumberRange::positive());
   reader.read("wheel_separation_multiplier", &drive.separation_multiplier, NumberRange::positive());
   reader.read("wheel_radius_multiplier", &drive.radius_multiplier, NumberRange::positive());
-  readLimits(reader, "linear", "x", &drive.linear);
-  readLimits(reader, "angular", "z", &drive.angular);
+  readTwistLimits(reader, "linear", "x", &drive.linear);
+  readTwistLimits(reader, "angular", "z", &drive.angular);
   reader.read("wheel_acceleration", &drive.wheel_acceleration, NumberRange::notNegative());
   reader.read("wheel_torque", &drive.wheel_torque, NumberRange::notNegative());
   reader.read("cmd_vel_timeout", &drive.cmd_vel_timeout, NumberRange::notNegative());

@@ -11,8 +11,8 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double DT = 0.001;        // [s]
-constexpr double ROUNDING = 1e-12;  // [m/s and their derivatives] beside limits
+constexpr double STEP_TIME = 0.001;  // [s]
+constexpr double ROUNDING = 1e-12;   // [m/s and their derivatives] beside limits
 
 SpeedLimits limitsOf(double velocity, double acceleration, double jerk) {
   return {-velocity, velocity, -acceleration, acceleration, -jerk, jerk};
@@ -23,11 +23,11 @@ int stepsUntil(double wanted, const SpeedLimits& limits, LimitedSpeed* now) {
   int steps = 0;
   const double side = wanted - now->speed;
   while (now->speed != wanted && steps < 100000) {
-    const LimitedSpeed next = speedAfterStep(*now, wanted, limits, DT);
+    const LimitedSpeed next = speedAfterStep(*now, wanted, limits, STEP_TIME);
     EXPECT_LE(next.acceleration, limits.max_acceleration + ROUNDING);
     EXPECT_GE(next.acceleration, limits.min_acceleration - ROUNDING);
-    EXPECT_LE((next.acceleration - now->acceleration) / DT, limits.max_jerk + ROUNDING / DT);
-    EXPECT_GE((next.acceleration - now->acceleration) / DT, limits.min_jerk - ROUNDING / DT);
+    EXPECT_LE((next.acceleration - now->acceleration) / STEP_TIME, limits.max_jerk + ROUNDING / STEP_TIME);
+    EXPECT_GE((next.acceleration - now->acceleration) / STEP_TIME, limits.min_jerk - ROUNDING / STEP_TIME);
     EXPECT_GE((wanted - next.speed) * side, -ROUNDING);
     *now = next;
     ++steps;
@@ -36,7 +36,7 @@ int stepsUntil(double wanted, const SpeedLimits& limits, LimitedSpeed* now) {
 }
 
 TEST(LimitedSpeed, WithoutLimitsFollowsAtOnce) {
-  EXPECT_EQ(speedAfterStep({0.3, 5}, 0.7, {}, DT).speed, 0.7);
+  EXPECT_EQ(speedAfterStep({0.3, 5}, 0.7, {}, STEP_TIME).speed, 0.7);
   EXPECT_EQ(allowedSpeed(1e6, {}), 1e6);
 }
 
@@ -44,16 +44,16 @@ TEST(LimitedSpeed, ChangesAtItsAcceleration) {
   const SpeedLimits limits = limitsOf(0.8, 2, SpeedLimits::NONE);
   EXPECT_EQ(allowedSpeed(-3, limits), -0.8);
   LimitedSpeed speed;
-  EXPECT_NEAR(stepsUntil(0.8, limits, &speed), 0.8 / 2 / DT, 1);
-  EXPECT_NEAR(stepsUntil(-0.8, limits, &speed), 1.6 / 2 / DT, 1);
+  EXPECT_NEAR(stepsUntil(0.8, limits, &speed), 0.8 / 2 / STEP_TIME, 1);
+  EXPECT_NEAR(stepsUntil(-0.8, limits, &speed), 1.6 / 2 / STEP_TIME, 1);
 }
 
 TEST(LimitedSpeed, HasASignsOwnLimits) {
   SpeedLimits limits = limitsOf(1, 2, SpeedLimits::NONE);
   limits.min_acceleration = -4;
   LimitedSpeed speed;
-  EXPECT_NEAR(stepsUntil(1, limits, &speed), 1 / 2.0 / DT, 1);
-  EXPECT_NEAR(stepsUntil(0, limits, &speed), 1 / 4.0 / DT, 1);
+  EXPECT_NEAR(stepsUntil(1, limits, &speed), 1 / 2.0 / STEP_TIME, 1);
+  EXPECT_NEAR(stepsUntil(0, limits, &speed), 1 / 4.0 / STEP_TIME, 1);
 }
 
 TEST(LimitedSpeed, WithJerkTakesTheTimeOfTheQuickestRamp) {
@@ -61,8 +61,8 @@ TEST(LimitedSpeed, WithJerkTakesTheTimeOfTheQuickestRamp) {
   const SpeedLimits limits = limitsOf(5, 1, 2);
   for (const auto& [change, seconds] : {std::make_pair(1.0, 1 / 1.0 + 1 / 2.0), std::make_pair(0.1, 2 * std::sqrt(0.1 / 2))}) {
     LimitedSpeed speed;
-    EXPECT_NEAR(stepsUntil(change, limits, &speed) * DT, seconds, 3 * DT) << change;
-    EXPECT_NEAR(stepsUntil(0, limits, &speed) * DT, seconds, 3 * DT) << change;
+    EXPECT_NEAR(stepsUntil(change, limits, &speed) * STEP_TIME, seconds, 3 * STEP_TIME) << change;
+    EXPECT_NEAR(stepsUntil(0, limits, &speed) * STEP_TIME, seconds, 3 * STEP_TIME) << change;
   }
 }
 
@@ -74,9 +74,9 @@ TEST(LimitedSpeed, KeepsItsLimitsWhateverIsWanted) {
   for (int command = 0; command < 200; ++command) {
     const double wanted = random.uniform(-1, 1);
     for (int step = 0; step < 40; ++step) {
-      const LimitedSpeed next = speedAfterStep(speed, wanted, limits, DT);
+      const LimitedSpeed next = speedAfterStep(speed, wanted, limits, STEP_TIME);
       ASSERT_LE(std::abs(next.acceleration), 3 + ROUNDING);
-      const double jerk = (next.acceleration - speed.acceleration) / DT;
+      const double jerk = (next.acceleration - speed.acceleration) / STEP_TIME;
       ASSERT_LE(jerk, 20 + 1e-6);
       ASSERT_GE(jerk, -50 - 1e-6);
       ASSERT_LE(std::abs(next.speed), 1 + ROUNDING) << command;
