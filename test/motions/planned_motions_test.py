@@ -87,18 +87,32 @@ def test_hands_on_a_wall_hold_what_feet_alone_do_not(case):
     assert off(without["bodies"]["humanoid::pelvis"], leaning["end"]["root"])[1] > 0.5, "it falls where there is no wall"
 
 
-def test_a_foot_turns_about_its_toes(case):
-    """Where the rear leg is too short for a flat foot the heel rises; the toes' ends stay."""
-    toes = {"link": "left_foot", "points": [[0.14, -0.055, -0.06], [0.14, 0.055, -0.06]], "facing": [0, 0, 1], "keeps": "edge"}
+@pytest.mark.parametrize("radius", [0.0, 0.03])
+def test_a_foot_turns_about_its_toes(case, radius):
+    """Where the rear leg is too short for a flat foot the heel rises; the toes' ends stay, or roll where they are round."""
+    toes = {"link": "left_foot", "points": [[0.14, -0.055, radius - 0.06], [0.14, 0.055, radius - 0.06]], "facing": [0, 0, 1], "keeps": "edge",
+            "radius": radius}
     phases = [STEPS["phases"][0], {"name": "far", "duration": 2, "move": {"right": {"by": [0.25, 0, 0], "lift": 0.04}}},
               {"name": "heel up", "duration": 3, "release": ["left"], "com": {"over": ["right"]}, "body": {"rise": 0.03}}]
     feet = {name: {"xyz": [0.5, y, 0.0025], "rpy": [0, 0, 0]} for name, y in (("left", 0.12), ("right", -0.12))}
     plan = case.plan(WORLD, changed(STEPS, rate=25, contacts=dict(STEPS["contacts"], left_toes=toes), holding=["left", "left_toes", "right"], phases=phases,
                                     start={"contacts": feet, "com": {"over": ["left", "right"]}, "height": 0.57, "rpy": [0, 0, 0]}))
     flat, turned = plan["start"]["links"]["left_toes"], plan["phases"][-1]["end"]["links"]["left_toes"]
-    assert 2 * math.asin(math.hypot(*turned["quat_xyzw"][:3])) > 0.2, "the heel rises"
+    angle = 2 * math.asin(math.hypot(*turned["quat_xyzw"][:3]))
+    assert angle > 0.2, "the heel rises"
     for point in toes["points"]:
-        assert math.dist(in_world(flat, point), in_world(turned, point)) < 3e-4
+        went = [b - a for a, b in zip(in_world(flat, point), in_world(turned, point))]
+        assert went == pytest.approx([radius * angle, 0.0, 0.0], abs=3e-4)
+
+
+def test_a_free_centre_of_mass_goes_with_the_body(case):
+    """Both feet and an orientation leave it no other place than where the pelvis carries it."""
+    bow = {"name": "bow", "duration": 2, "com": "free", "body": {"rpy": [0, 0.05, 0]}}
+    plan = case.plan(WORLD, changed(STEPS, rate=25, phases=[STEPS["phases"][0], bow]))
+    before, after = [phase["end"] for phase in plan["phases"]]
+    pitch = 2 * math.asin(after["root"]["quat_xyzw"][1])
+    assert pitch == pytest.approx(0.05, abs=2e-3) and after["com"][0] > before["com"][0] + 0.003
+    assert plan["phases"][1]["margin_m"] >= STEPS["margin"]
 
 
 def in_world(pose, point):

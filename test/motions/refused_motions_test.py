@@ -23,6 +23,7 @@ IMPOSSIBLE = {
     "tall": (with_phases({"name": "grow", "duration": 2, "body": {"rise": 0.3}}), ["grow", "pelvis"]),
     "narrow": (changed(STEPS, margin=0.08), ["right forward", "support of left leaves 55.0 mm"]),
     "weak": (changed(SQUAT, effort=0.1), ["arms forward", "of its effort limit at rest"]),
+    "falls": (with_phases(CROUCH, {"name": "bow", "duration": 2, "com": "free", "body": {"rpy": [0, 0.15, 0]}}), ["bow", "com: free: the centre of mass comes", "left, right"]),
     "in the air": (with_phases({"name": "fly", "duration": 1, "move": {"left": {"by": [0, 0, 0.1]}, "right": {"by": [0, 0, 0.1]}}}), ["fly", "nothing"]),
     "unbalanced": (changed(STEPS, start={"com": {"xy": [0.2, 0.0]}}), ["the start", "outside of the support"]),
 }
@@ -51,6 +52,8 @@ BAD = {
     "duration": (with_phases(dict(CROUCH, duration=-1)), "phases[0].duration: '-1' is less than 0.001"),
     "holding": (changed(STEPS, holding=["left", "left"]), "holding: 'left' is there twice"),
     "com": (with_phases(dict(CROUCH, com={"over": ["left"], "xy": [0, 0]})), "phases[0].com: has 2 keys"),
+    "com in a word": (with_phases(dict(CROUCH, com="fre")), "phases[0].com: "),
+    "round": (with_contact(radius=0.05), "contacts.left.radius: goes with 'facing'"),
     "kind": (changed(STEPS, holding=[["left"]]), "holding[0]: unknown value"),
     "list": ("[1, 2]\n", "is no map"),
     "yaml": ("a: [\n", "not YAML"),

@@ -67,9 +67,14 @@ def simulate(folder, config, duration, csv_rate, options=(), wanted=None):
 
 
 def read_motion(name):
-    """A motion of the shared data as a list of (time, positions by joint); of rows with the same time the first."""
+    """A motion of the shared data, as of read_trajectory."""
+    return read_trajectory(shared_data("motions/%s.csv" % name))
+
+
+def read_trajectory(path):
+    """A trajectory's file as a list of (time, positions by joint); of rows with the same time the first."""
     rows = []
-    with open(str(shared_data("motions/%s.csv" % name))) as stream:
+    with open(str(path)) as stream:
         for row in csv.DictReader(stream):
             if not rows or float(row["time"]) > rows[-1][0]:
                 rows.append((float(row["time"]), {key: float(value) for key, value in row.items() if key.endswith("_joint")}))

@@ -5,18 +5,20 @@ import numpy as np
 from sweeping.checked_yaml import Field, read_yaml
 
 KEYS = ("robot", "rate", "margin", "speed", "effort", "friction", "clearance", "shift_duration", "body", "contacts", "holding", "start", "phases")
-CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "friction", "force", "keeps")
+CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "radius", "friction", "force", "keeps")
 START_KEYS = ("contacts", "com", "height", "rpy", "joints")
 PHASE_KEYS = ("name", "duration", "com", "body", "move", "release", "joints")
 KEEPS = ("pose", "edge", "position")
+FREE = "free"         # of a centre of mass that goes where contacts, body and joints take it
 FASTEST_RATE, LONGEST_PHASE, MOST_PHASES, MOST_POINTS, FARTHEST = 1000, 3600, 1000, 64, 1000
 SHORTEST_EDGE = 1e-3  # [m]
 
-# Where a link may touch: points in the link's frame; outward normals of the environment, in the link's frame or, if `facing`, in the world; friction;
-# most normal force [N] per point, None for the robot's weight; keeps: one of KEEPS, of a held link; edge: unit vector from the first point to the last
-# in the link's frame, about which one that keeps its edge turns, else None. Its middle is that of its points.
-Contact = collections.namedtuple("Contact", "name link points normals facing friction force keeps edge middle")
-# One target of the centre of mass: kind is "over" (value: names of contacts), "xy" or "by" (value: [m]).
+# Where a link may touch: points in the link's frame, middles of balls of a radius [m] that roll if it is not 0; outward normals of the environment, in
+# the link's frame or, if `facing`, in the world; friction; most normal force [N] per point, None for the robot's weight; keeps: one of KEEPS, of a held
+# link; edge: unit vector from the first point to the last in the link's frame, about which one that keeps its edge turns, else None. Its middle is
+# that of its points.
+Contact = collections.namedtuple("Contact", "name link points normals facing radius friction force keeps edge middle")
+# One target of the centre of mass: kind is "over" (value: names of contacts), "xy" or "by" (value: [m]), or FREE (value: None).
 CentreTarget = collections.namedtuple("CentreTarget", "kind value")
 # One target of the body: kind is "height" or "rise", or None; rpy or None.
 BodyTarget = collections.namedtuple("BodyTarget", "kind height rpy")
@@ -110,8 +112,11 @@ def read_contact(name, field, friction):
     if not 0 < len(points) <= MOST_POINTS:
         field.below("points").refuse("has %d items; write 1 to %d" % (len(points), MOST_POINTS))
     keeps = field.below("keeps").choice(KEEPS) if "keeps" in field.value else "pose"
-    return Contact(name, field.below("link").text(), points, read_normals(field, len(points)), "facing" in field.value, within(field, "friction", friction, 0.01, 10),
-                   within(field, "force", None, 1e-3, 1e6), keeps, read_edge(field, points) if keeps == "edge" else None, points.mean(axis=0))
+    radius = within(field, "radius", 0.0, 0, FARTHEST)
+    if radius and "facing" not in field.value:
+        field.below("radius").refuse("goes with 'facing', as a ball turns under its contact; write facing: [0, 0, 1]")
+    return Contact(name, field.below("link").text(), points, read_normals(field, len(points)), "facing" in field.value, radius,
+                   within(field, "friction", friction, 0.01, 10), within(field, "force", None, 1e-3, 1e6), keeps, read_edge(field, points) if keeps == "edge" else None, points.mean(axis=0))
 
 
 def read_edge(field, points):
@@ -146,9 +151,11 @@ def read_start(field, contacts):
 
 def read_centre(field, contacts):
     """A target of the centre of mass."""
+    if field.value == FREE:
+        return CentreTarget(FREE, None)
     field.map(("over", "xy", "by"))
     if len(field.value) != 1:
-        field.refuse("has %d keys; write over: [CONTACT], xy: [x, y] or by: [x, y]" % len(field.value))
+        field.refuse("has %d keys; write over: [CONTACT], xy: [x, y] or by: [x, y], or free" % len(field.value))
     (kind,) = field.value
     below = field.below(kind)
     value = names_in(below, contacts) if kind == "over" else numbers(below, 2)

@@ -9,7 +9,7 @@ from sweeping.checked_yaml import InputError
 from planning import support
 from planning.clearance import touching
 from planning.inverse_kinematics import joints_at_limits, reach
-from planning.motion_file import CentreTarget, Phase
+from planning.motion_file import FREE, CentreTarget, Phase
 from planning.robot_model import ROOT_COORDINATES, Posture, rotation_vector
 from planning.tasks import CENTRE, Between, ContactWay, PhaseTasks, frame_of
 from planning.timing import timed
@@ -102,7 +102,7 @@ class Planner:
             rotation, middle = frame_of(placed, contact)
             share = contact.force / weight if contact.force else 1.0
             normals = contact.normals if contact.facing else contact.normals @ rotation.T
-            points += [support.ContactPoint(contact.link, middle + rotation @ (point - contact.middle), normal, contact.friction, share)
+            points += [support.ContactPoint(contact.link, middle + rotation @ (point - contact.middle) - contact.radius * normal, normal, contact.friction, share)
                        for point, normal in zip(contact.points, normals)]
         return points
 
@@ -169,7 +169,7 @@ class Planner:
         placed, duration, speed = timed(self, phase, lambda shares: self.samples(tasks, targets, shares, phase), self.lowest_contact(during))
         shares = [(k + 1) / len(placed) for k in range(len(placed))]
         residuals = [each for one, share in zip(placed, shares) for each in tasks.residuals(one, share)]
-        margin = min(support.region_margin(region, each.centre_of_mass[:2]) for each in [start] + placed) if region is not None else None
+        margin = self.least_margin(phase, during, region, [start] + placed)
         self.placed = placed[-1]
         self.check_body(phase)
         for contact, _ in tasks.ways:
@@ -197,7 +197,7 @@ class Planner:
         self.aim_body(phase.body)
         rotation, position = self.placed.link(self.body)
         body = (self.body, Between(position[2], self.height), ContactWay((rotation, position), (self.orientation, position), np.zeros(3)))
-        return PhaseTasks(ways, Between(self.placed.centre_of_mass[:2], self.centre_target(phase, during, region)), body, posture, free)
+        return PhaseTasks(ways, self.centre_way(phase, during, region), body, posture, free)
 
     def aim_body(self, target):
         """Height and orientation that the body is to have from now on."""
@@ -207,6 +207,12 @@ class Planner:
             self.height = target.height if target.kind == "height" else self.height + target.height
         if target.rpy is not None:
             self.orientation = np.array(from_rpy(target.rpy))
+
+    def centre_way(self, phase, during, region):
+        """The way of the centre of mass as a Between of (x, y), or None if the phase leaves it free."""
+        if phase.com is not None and phase.com.kind == FREE:
+            return None
+        return Between(self.placed.centre_of_mass[:2], self.centre_target(phase, during, region))
 
     def centre_target(self, phase, during, region):
         """Where the centre of mass goes, (x, y), which lies within the support by the margin."""
@@ -269,6 +275,16 @@ class Planner:
         if off > BODY_M or turned > BODY_RAD:
             self.refuse(phase.name, "the body (link '%s') ends %.1f mm and %.3f rad from its target; %sask for less, or give the phase more time"
                         % (self.body, 1e3 * off, turned, self.limits_met([self.placed])))
+
+    def least_margin(self, phase, during, region, placed):
+        """The least distance [m] of the centre of mass from the edge of its support, None on a fixed base; a refusal of a free one that comes too near."""
+        if region is None:
+            return None
+        margin = min(support.region_margin(region, each.centre_of_mass[:2]) for each in placed)
+        if phase.com is not None and phase.com.kind == FREE and margin < self.motion.margin - REACHED_M:
+            self.refuse(phase.name, "com: free: the centre of mass comes %s the support of %s, margin is %g mm; ask for less of the body and joints, or write com: xy"
+                        % (beside(margin), ", ".join(during), 1e3 * self.motion.margin))
+        return margin
 
     def largest_effort(self, name, during, placed):
         """(share, joint) over some samples of a phase; a refusal beyond what the motion allows."""
@@ -333,7 +349,7 @@ class Planner:
             position = self.placed.link(self.body)[1]
             body = None if self.model.fixed else (self.body, Between(self.height, self.height), still((self.orientation, position)))
             target = None
-            if centre and start.com is not None:
+            if centre and start.com is not None and start.com.kind != FREE:
                 target = self.centre_target(phase, self.holding, self.region(self.holding, phase.name))
                 target = Between(target, target)
             tasks = PhaseTasks(ways, target, body, Between(self.home, self.home), free)

@@ -79,7 +79,10 @@ class PhaseTasks:
         for contact, way in self.ways:
             rotation, middle = way.at(share)
             is_rotation, is_middle = frame_of(placed, contact)
-            jacobian, error = placed.point_jacobian(contact.link, is_middle), np.append(middle - is_middle, rotation_vector(rotation @ is_rotation.T))
+            arm = contact.radius * contact.normals[0] if way.rests else np.zeros(3)  # from where a ball that rolls touches to its middle
+            rolled = np.cross(rotation_vector(is_rotation @ rotation.T), arm)
+            jacobian = placed.point_jacobian(contact.link, is_middle - arm)
+            error = np.append(middle + rolled - is_middle, rotation_vector(rotation @ is_rotation.T))
             kept = np.vstack([np.eye(6)[:3], kept_turns(contact, rotation)])
             rows.append((contact.name, kept @ jacobian, kept @ error))
         if self.centre is not None:

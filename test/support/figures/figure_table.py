@@ -68,8 +68,8 @@ FIGURES = {
     11: of_paper("a gripper picks up a block of 12 triangles", "lifts, shakes and places it", ["gripper_block", "gripper_block_edge"],
                  "gripper_block", ["paper_gripper_block"], "tx90pr2"),
     12: of_paper("18 mugs are stirred in a tray", "no interpenetrations throughout", ["tray18"], "tray18", ["paper_tray18"], "tx90pr2"),
-    13: of_paper("Hubo and a scanned chair", "climbs with hands and legs on a scan with holes (motion not published)", ["hubo_chair", "hubo_chair_floor"],
-                 "chair", ["paper_hubo_chair_150k"], "huboplus"),
+    13: of_paper("Hubo and a scanned chair", "sits down by grasping the armrests, a scan with holes (motion not published)",
+                 ["hubo_chair", "hubo_chair_floor", "hubo_chair_sits"], "chair_sits", ["paper_hubo_chair_150k"], "huboplus"),
 }
 
 

@@ -11,6 +11,7 @@ from climbing import CLIMB_ASKED, climbs  # noqa: E402
 from foot_forces import FootForces, pose_in  # noqa: E402
 from scene_runs import read_motion, simulate, world  # noqa: E402
 from shared_data import shared_data  # noqa: E402
+from sitting import SIT_ASKED, sits  # noqa: E402
 from trajectory_file import write_trajectory  # noqa: E402
 
 
@@ -274,6 +275,7 @@ CASES = {
     "hubo_chair": (WHOLE_ASKED, on_its_own("paper_hubo_chair_150k", 3.0)),
     "hubo_chair_floor": (WHOLE_ASKED + "; on the other side of the chair, where the scan has a floor",
                          on_its_own("paper_hubo_chair_150k", 10.0, pose={"xyz": [0.7, 0.05, 1.0032431]})),
+    "hubo_chair_sits": (SIT_ASKED, sits),
     "hubo_stair_rail": (WHOLE_ASKED, on_its_own("hubo_stair_rail", 15.0, motion="hubo_stair_rail_traj")),
     "atlas_fractal": ("on hands and feet, servoI = 0; the same pose from 10 s to 3 minutes within 1 mm, 1e-3 rad", atlas(False)),
     "atlas_fractal_servo_i": ("the same with the servos' I", atlas(True)),

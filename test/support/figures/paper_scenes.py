@@ -7,10 +7,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import gripper_motions  # noqa: E402
 from scene_runs import read_motion, world  # noqa: E402
 from shared_data import shared_data  # noqa: E402
+from sitting import sitting_scene  # noqa: E402
 
 SWAY_STARTS = 1.0  # [s]
 LEANING = {"xyz": [0.248, -0.00247315, 1.0], "rpy": [0.0, -0.25, 0.0]}  # before the ladder, on its heels
 HAND_VIEW = "0.8,-0.4,1.0,0.4,0.1,0.83"
+CHAIR_VIEW = "-1.6,-1.5,1.0,-0.2,0,0.5"
 
 
 def as_it_is(name, pose=None):
@@ -54,4 +56,6 @@ PICTURES = {
     "gripper_block": (grasp("paper_gripper_block", 0.140, 0.0), 4.7, HAND_VIEW),
     "tray18": (stir, 5.5, "1.2,-0.55,1.45,0.58,0.12,0.72"),
     "chair": (as_it_is("paper_hubo_chair_150k", {"xyz": [0.7, 0.05, 1.0032431], "rpy": [0, 0, 0]}), 1.0, None),
+    "chair_edge": (sitting_scene, 22.0, CHAIR_VIEW),
+    "chair_sits": (sitting_scene, 50.0, CHAIR_VIEW),
 }
