@@ -70,6 +70,14 @@ def test_targets_that_are_found_can_be_asked_for_and_are_no_worse(case, capsys):
     assert found_targets(case, capsys, motion, "crouch") == found_targets(case, capsys, motion, "crouch")
 
 
+def test_a_free_centre_of_mass_stays_free(case, capsys):
+    motion = changed(STEPS, phases=[{"name": "crouch", "duration": 2, "com": "free", "body": {"rise": -0.05}}])
+    targets, _ = found_targets(case, capsys, motion, "crouch")
+    assert targets["com"] == "free"
+    motion["phases"][0].update(targets)
+    assert case.plan(WORLD, motion)["phases"][-1]["margin_m"] >= STEPS["margin"]
+
+
 def test_a_posture_at_the_start_is_found(case, capsys):
     start = {"contacts": {"left": {"xyz": [0.03, 0.11, 0.0025]}, "right": {"xyz": [0.03, -0.11, 0.0025]}}}
     motion = changed(STEPS, start=start, phases=STEPS["phases"][:1])

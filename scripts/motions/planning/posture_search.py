@@ -6,7 +6,7 @@ from sweeping.checked_yaml import InputError, flow, nearest
 
 from planning import support
 from planning.inverse_kinematics import reach
-from planning.motion_file import BodyTarget, CentreTarget
+from planning.motion_file import FREE, BodyTarget, CentreTarget
 from planning.planner import REACHED_M
 from planning.results import roll_pitch_yaw
 from planning.robot_model import Posture
@@ -87,19 +87,34 @@ def targets_met(planner, placed, joints):
     return np.concatenate([placed.centre_of_mass[:2], [position[2]], roll_pitch_yaw(rotation), placed.posture.joints[indices]])
 
 
-def told(targets, joints):
-    """Targets as the motion file has them."""
+def told(asked, targets, joints):
+    """Targets of a phase or a start as the motion file has them."""
     said = {"com": {"xy": targets[:2]}, "body": {"height": targets[2], "rpy": targets[3:6]}}
+    if is_free(asked):
+        said["com"] = FREE
     if joints:
         said["joints"] = dict(zip(joints, targets[6:]))
-    rounded = lambda value: ({key: rounded(each) for key, each in value.items()} if isinstance(value, dict)
-                             else [round(float(each), 4) for each in value] if np.ndim(value) else round(float(value), 4))
     return ["%s: %s" % (key, flow(value)) for key, value in rounded(said).items()]
 
 
+def rounded(value):
+    """A value of a motion file, its numbers with four digits."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, dict):
+        return {key: rounded(each) for key, each in value.items()}
+    return [round(float(each), 4) for each in value] if np.ndim(value) else round(float(value), 4)
+
+
+def is_free(asked):
+    """Whether a phase or a start leaves the centre of mass free."""
+    return asked.com is not None and asked.com.kind == FREE
+
+
 def with_targets(asked, targets, joints):
-    """A phase or a start that asks for these targets."""
-    return asked._replace(com=CentreTarget("xy", targets[:2]), body=BodyTarget("height", targets[2], targets[3:6]), joints=dict(zip(joints, targets[6:])))
+    """A phase or a start that asks for these targets; a centre of mass that it leaves free stays so."""
+    centre = asked.com if is_free(asked) else CentreTarget("xy", targets[:2])
+    return asked._replace(com=centre, body=BodyTarget("height", targets[2], targets[3:6]), joints=dict(zip(joints, targets[6:])))
 
 
 def find_phase(planner, number, tries):
@@ -131,7 +146,7 @@ def find_phase(planner, number, tries):
         first[:2] = phase.com.value
     first[6:] = [phase.joints[name] for name in joints]
     targets, words = PostureSearch(planner, joints, [held, leaving_next] if leaving_next else [held], tries).find(solved, first)
-    return told(targets, joints) + [words]
+    return told(phase, targets, joints) + [words]
 
 
 def find_start(planner, tries):
@@ -149,7 +164,7 @@ def find_start(planner, tries):
         return planner.placed, 0.0
 
     targets, words = PostureSearch(planner, joints, [planner.holding], tries).find(solved, first)
-    return told(targets, joints) + [words]
+    return told(start, targets, joints) + [words]
 
 
 def find_posture(planner, name, tries):
