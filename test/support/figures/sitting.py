@@ -37,9 +37,12 @@ def chair():
 
 def planned_sitting(folder):
     """(report of the plan, configuration where it starts); motion.csv is in the folder."""
-    (folder / "world.yaml").write_text(yaml.safe_dump(chair(), sort_keys=False))
+    config = chair()
+    (folder / "world.yaml").write_text(yaml.safe_dump(config, sort_keys=False))
     planned = plan(folder / "world.yaml", MOTION, folder)
-    return planned, yaml.safe_load((folder / "started.yaml").read_text())
+    started = yaml.safe_load((folder / "started.yaml").read_text())["robots"][0]
+    config["robots"][0].update({key: started[key] for key in ("pose", "initial_positions")})
+    return planned, config
 
 
 def sitting_scene():
@@ -53,7 +56,7 @@ def sits(folder, options):
     planned, config = planned_sitting(folder)
     report, rows = simulate(folder, config, planned["duration_s"] + STANDS, 50, ["--trajectory", str(folder / "motion.csv")],
                             lambda column: ROOT_LINK in column or column.endswith(".force_z"))
-    weight = -config["gravity"][2] * kinematics.Tree(chair()["robots"][0]["urdf"]).total_mass()
+    weight = -config["gravity"][2] * kinematics.Tree(config["robots"][0]["urdf"]).total_mass()
     return report, sit_figures(report, rows, planned, weight)
 
 
