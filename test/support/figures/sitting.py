@@ -13,6 +13,7 @@ from climbing import LITTLE, NEAR, STANDS, STILL  # noqa: E402
 from foot_forces import pose_in  # noqa: E402
 from hubo_scenes import bent_hubo, off, plan  # noqa: E402
 from scene_runs import read_trajectory, simulate  # noqa: E402
+from shared_data import shared_data  # noqa: E402
 
 MOTION = ROOT / "config" / "motions" / "hubo_onto_a_chair.yaml"
 ROOT_LINK = "Body_Torso5"
@@ -52,12 +53,17 @@ def sitting_scene():
         return config, read_trajectory(pathlib.Path(folder) / "motion.csv")
 
 
-def sits(folder, options):
-    planned, config = planned_sitting(folder)
-    report, rows = simulate(folder, config, planned["duration_s"] + STANDS, 50, ["--trajectory", str(folder / "motion.csv")],
-                            lambda column: ROOT_LINK in column or column.endswith(".force_z"))
-    weight = -config["gravity"][2] * kinematics.Tree(config["robots"][0]["urdf"]).total_mass()
-    return report, sit_figures(report, rows, planned, weight)
+def sits(scan=None):
+    """The case. scan: of the shared data, on which the motion is played in place of the one that it is planned for."""
+    def case(folder, options):
+        planned, config = planned_sitting(folder)
+        if scan:
+            config["environments"][0]["uri"] = str(shared_data(scan))
+        report, rows = simulate(folder, config, planned["duration_s"] + STANDS, 50, ["--trajectory", str(folder / "motion.csv")],
+                                lambda column: ROOT_LINK in column or column.endswith(".force_z"))
+        weight = -config["gravity"][2] * kinematics.Tree(config["robots"][0]["urdf"]).total_mass()
+        return report, sit_figures(report, rows, planned, weight)
+    return case
 
 
 def carried(row, weight):
