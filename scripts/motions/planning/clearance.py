@@ -8,7 +8,7 @@ from planning.robot_file import ROOT
 from planning.robot_model import quaternion
 from planning.tasks import RISEN, SINKS
 
-NO_MODULE = "'clearance' needs the Python module of a built blem_sim (%s); run scripts/build and source scripts/env.bash, or leave the key out"
+NO_MODULE = "'%s' needs the Python module of a built blem_sim (%s); run scripts/build and source scripts/env.bash, or leave the key out"
 
 SEEN = 0.02      # [m] beyond the clearance that is asked for, within which gaps are told
 NEAR_JOINTS = 2  # joints between links that cross as they bend, as a shin and a foot do at an ankle that turns about two axes
@@ -63,7 +63,7 @@ def scene(file, robot, packages):
         import blem_sim
         simulator = blem_sim.Simulator(robot.file, packages=dict({"blem_sim": str(ROOT)}, **packages))
     except ImportError as error:
-        raise InputError("%s: %s" % (file, NO_MODULE % error))
+        raise InputError("%s: %s" % (file, NO_MODULE % ("clearance", error)))
     except ValueError as error:
         raise InputError(str(error))
     return simulator.clearance(robot.name)

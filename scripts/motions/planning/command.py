@@ -12,6 +12,7 @@ from planning.planner import Planner
 from planning.posture_search import find_posture
 from planning.results import table, write_results
 from planning.robot_file import read_robot
+from planning.settling import Settling
 
 FINE, BAD_INPUT = 0, 2
 USAGE = """Plans a quasi-static motion of a robot: joint trajectories that keep contacts where they hold and the centre of mass over them.
@@ -53,7 +54,9 @@ def main(arguments):
         options = read_options(arguments)
         motion = Motion(options.motion)
         robot = read_robot(options.config, motion.robot, options.packages)
-        planner = Planner(motion, robot, Clearance(motion, robot, options.packages) if motion.clearance is not None else None)
+        clearance = Clearance(motion, robot, options.packages) if motion.clearance is not None else None
+        settles = any(contact.settles for contact in motion.contacts.values())
+        planner = Planner(motion, robot, clearance, Settling(motion, robot, options.packages) if settles else None)
         if options.find is not None:
             print("\n".join(find_posture(planner, options.find, options.tries)))
             return FINE

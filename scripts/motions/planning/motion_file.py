@@ -5,7 +5,7 @@ import numpy as np
 from sweeping.checked_yaml import Field, read_yaml
 
 KEYS = ("robot", "rate", "margin", "speed", "effort", "friction", "clearance", "shift_duration", "body", "contacts", "holding", "start", "phases")
-CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "radius", "friction", "force", "keeps")
+CONTACT_KEYS = ("link", "points", "normal", "normals", "facing", "radius", "friction", "force", "keeps", "settles")
 START_KEYS = ("contacts", "com", "height", "rpy", "joints")
 PHASE_KEYS = ("name", "duration", "com", "body", "move", "release", "joints")
 KEEPS = ("pose", "edge", "position")
@@ -15,9 +15,9 @@ SHORTEST_EDGE = 1e-3  # [m]
 
 # Where a link may touch: points in the link's frame, middles of balls of a radius [m] that roll if it is not 0; outward normals of the environment, in
 # the link's frame or, if `facing`, in the world; friction; most normal force [N] per point, None for the robot's weight; keeps: one of KEEPS, of a held
-# link; edge: unit vector from the first point to the last in the link's frame, about which one that keeps its edge turns, else None. Its middle is
-# that of its points.
-Contact = collections.namedtuple("Contact", "name link points normals facing radius friction force keeps edge middle")
+# link; edge: unit vector from the first point to the last in the link's frame, about which one that keeps its edge turns, else None; settles: whether it
+# comes to rest on meshes where it is put down. Its middle is that of its points.
+Contact = collections.namedtuple("Contact", "name link points normals facing radius friction force keeps edge settles middle")
 # One target of the centre of mass: kind is "over" (value: names of contacts), "xy" or "by" (value: [m]), or FREE (value: None).
 CentreTarget = collections.namedtuple("CentreTarget", "kind value")
 # One target of the body: kind is "height" or "rise", or None; rpy or None.
@@ -116,7 +116,8 @@ def read_contact(name, field, friction):
     if radius and "facing" not in field.value:
         field.below("radius").refuse("goes with 'facing', as a ball turns under its contact; write facing: [0, 0, 1]")
     return Contact(name, field.below("link").text(), points, read_normals(field, len(points)), "facing" in field.value, radius,
-                   within(field, "friction", friction, 0.01, 10), within(field, "force", None, 1e-3, 1e6), keeps, read_edge(field, points) if keeps == "edge" else None, points.mean(axis=0))
+                   within(field, "friction", friction, 0.01, 10), within(field, "force", None, 1e-3, 1e6), keeps,
+                   read_edge(field, points) if keeps == "edge" else None, optional(field, "settles", Field.flag, False), points.mean(axis=0))
 
 
 def read_edge(field, points):

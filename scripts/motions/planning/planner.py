@@ -28,8 +28,8 @@ Planned = collections.namedtuple("Planned", "name duration holding margin speed 
 class Planner:
     """Plans the phases of a motion one after the other. Raises InputError, in one line, where one is not possible."""
 
-    def __init__(self, motion, robot, clearance=None):
-        self.motion, self.robot, self.model, self.clearance = motion, robot, robot.model, clearance
+    def __init__(self, motion, robot, clearance=None, settling=None):
+        self.motion, self.robot, self.model, self.clearance, self.settling = motion, robot, robot.model, clearance, settling
         self.body = motion.body or self.model.links[0]
         self.check_names()
         used = self.model.joints_between([contact.link for contact in motion.contacts.values()] + [self.body])
@@ -185,7 +185,8 @@ class Planner:
             contact = self.motion.contacts[name]
             start = frame_of(self.placed, contact)
             rotation = start[0] if way.rpy is None else np.array(from_rpy(way.rpy))
-            ways.append((contact, ContactWay(start, (rotation, way.to if way.to is not None else start[1] + way.by), way.lift)))
+            end = (rotation, way.to if way.to is not None else start[1] + way.by)
+            ways.append((contact, ContactWay(start, self.settled(contact, end) if way.lands else end, way.lift)))
         free = self.free.copy()
         for name, value in phase.joints.items():
             column = self.model.joint_names.index(name)
@@ -198,6 +199,10 @@ class Planner:
         rotation, position = self.placed.link(self.body)
         body = (self.body, Between(position[2], self.height), ContactWay((rotation, position), (self.orientation, position), np.zeros(3)))
         return PhaseTasks(ways, self.centre_way(phase, during, region), body, posture, free)
+
+    def settled(self, contact, frame):
+        """A frame that a contact is put down at, as it comes to rest there if it settles."""
+        return self.settling.rest(contact, frame) if contact.settles else frame
 
     def aim_body(self, target):
         """Height and orientation that the body is to have from now on."""
@@ -329,7 +334,7 @@ class Planner:
             contact = self.motion.contacts[name]
             rotation, _ = frame_of(self.placed, contact)
             goal = (rotation if way.rpy is None else np.array(from_rpy(way.rpy)), way.to)
-            ways.append((contact, still(goal)))
+            ways.append((contact, still(self.settled(contact, goal))))
         stands = {self.motion.contacts[name].link for name in start.contacts}
         for name in self.holding:
             if self.motion.contacts[name].link not in stands:

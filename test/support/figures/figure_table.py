@@ -41,7 +41,7 @@ FIGURES = {
         "three_cubes": (STACKED, method.stacked(3, 180.0, 2.0)), "ten_cubes": (STACKED, method.stacked(10, 600.0, 2.0))},
                  lambda folder: method.stack(3), 2.0, "0.55,-0.75,0.4,0,0,0.15"),
     2: of_paper("Hubo and a scanned stepladder of a million triangles", "climbs stably on a mesh of a million triangles with holes",
-                ["hubo_stepladder", "hubo_stepladder_climb"],
+                ["hubo_stepladder", "hubo_stepladder_climb", "hubo_stepladder_1m_climb"],
                 "stepladder", ["paper_hubo_stepladder_150k", "paper_hubo_stepladder_1m"], "huboplus",
                 more={"hubo_stepladder_1m": (WHOLE_ASKED, on_its_own("paper_hubo_stepladder_1m", 10.0))}),
     3: of_paper("a gripper picks up a mug of one layer", "layers of 2.5 mm let it be picked up reliably", ["gripper_mug"], "gripper_mug",

@@ -272,6 +272,7 @@ CASES = {
     "hubo_ladder_climb": (CLIMB_ASKED, climbs("hubo_ladder", "hubo_up_a_ladder", pose={"xyz": [0.02, 0.4, 1.0], "rpy": [0, 0, 1.57]})),
     "hubo_stepladder": (WHOLE_ASKED, on_its_own("paper_hubo_stepladder_150k", 10.0)),
     "hubo_stepladder_climb": (CLIMB_ASKED, climbs("paper_hubo_stepladder_150k", "hubo_up_a_stepladder")),
+    "hubo_stepladder_1m_climb": (CLIMB_ASKED, climbs("paper_hubo_stepladder_1m", "hubo_up_a_stepladder")),
     "hubo_chair": (WHOLE_ASKED, on_its_own("paper_hubo_chair_150k", 3.0)),
     "hubo_chair_floor": (WHOLE_ASKED + "; on the other side of the chair, where the scan has a floor",
                          on_its_own("paper_hubo_chair_150k", 10.0, pose={"xyz": [0.7, 0.05, 1.0032431]})),
