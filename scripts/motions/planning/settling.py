@@ -5,6 +5,7 @@ import tempfile
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
+from kinematics import from_quaternion
 from sweeping.checked_yaml import InputError, read_yaml
 from sweeping.input_files import resolved
 
@@ -48,7 +49,7 @@ class Settling:
             file.write_text(self.link_alone(contact))
             pose = {"xyz": [float(x) for x in middle - rotation @ contact.middle], "rpy": [float(a) for a in roll_pitch_yaw(rotation)]}
             x, y, z, *quaternion = self.at_rest(contact, self.config_of(contact, file, pose))
-        rotation = matrix(quaternion)
+        rotation = np.array(from_quaternion(*quaternion))
         return rotation, np.append(middle[:2], ([x, y, z] + rotation @ contact.middle)[2])
 
     def at_rest(self, contact, config):
@@ -95,11 +96,3 @@ class Settling:
         robot.append(link)
         robot.extend(each for each in tree.findall("gazebo") if each.get("reference") == contact.link)
         return ElementTree.tostring(robot, encoding="unicode")
-
-
-def matrix(quaternion):
-    """Rotation matrix of a unit quaternion x, y, z, w."""
-    x, y, z, w = quaternion
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
