@@ -44,6 +44,10 @@ class ArticulatedStepper : public Stepper {
   void restore(const Scene& scene, geometry::StateReader* reader) override;
   bool agreesWith(const Scene& scene) const override;
   void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) override { memory_.forgetContacts(ids, go_on); }
+  bool pushed(std::uint64_t contact) const override {
+    const ContactRecord* const record = memory_.find(contact);
+    return record && !record->force.isZero(0);
+  }
 
  private:
   void rebuild(const Scene& scene);

@@ -212,6 +212,8 @@ void World::forgetContacts(std::vector<std::uint64_t> ids, const ContactRenames&
   impl_->stepper->forgetContacts(ids, go_on);
 }
 
+bool World::pushed(std::uint64_t contact) const { return impl_->stepper->pushed(contact); }
+
 void World::restoreChecked(const WorldState& state) {
   checkNumbers(impl_->scene, state);
   const WorldState before = save();

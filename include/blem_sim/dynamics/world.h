@@ -33,6 +33,8 @@ class World {
    * @param go_on those that are known there under another id: the old one and the new one of each
    */
   void forgetContacts(std::vector<std::uint64_t> ids, const ContactRenames& go_on = {});
+  /** Whether the contact of this id pushed in the last step. */
+  bool pushed(std::uint64_t contact) const;
 
   int bodyCount() const;  ///< slots, removed ones included
   int jointCount() const;

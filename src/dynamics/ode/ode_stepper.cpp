@@ -86,6 +86,7 @@ class OdeStepper : public Stepper {
     mimics_.restore(scene.joints().size(), reader);
   }
   void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) override { memory_.forget(ids, go_on); }
+  bool pushed(std::uint64_t contact) const override { return memory_.find(contact) != nullptr; }
 
  private:
   // A failed complementarity problem leaves its forces at 0: the step is done again, softer.

@@ -35,6 +35,8 @@ class Stepper {
   virtual bool agreesWith(const Scene&) const { return true; }
   /** Forgets the contacts with these ids. @param ids ascending @param go_on as World::forgetContacts has it */
   virtual void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) = 0;
+  /** Whether the contact of this id pushed in the last step. */
+  virtual bool pushed(std::uint64_t contact) const = 0;
 };
 
 }  // namespace blem_sim::dynamics

@@ -15,12 +15,6 @@ namespace {
 constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
 constexpr double SEPARATION_RATE = 1e4;   // [1/s]
 
-std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finalizer [Steele 2014]
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
 /** Unit, world: axis of a cylinder on a body. */
 Vector3 axisOf(const SimulatedWorld& world, const contact::Collider& cylinder) {
   const Pose X_BK = cylinder.X_BC * cylinder.geometry->cylinder()->X_GK;
@@ -56,9 +50,6 @@ double massOf(const SimulatedWorld& world, const contact::Collider& collider) {
   return mass;
 }
 
-/** Identity of the stop below a contact's spring, which is another contact. */
-std::uint64_t stopId(std::uint64_t id) { return mixed(id); }
-
 bool isCompliant(const contact::SurfaceProperties& surface) { return std::isfinite(surface.stiffness) && std::isfinite(surface.damping); }
 
 /** Makes a contact of meshes that cross a damper that lets go at SEPARATION_SPEED and never bounces: such contacts may contradict each
@@ -78,10 +69,6 @@ const reduction::Reduction* reductionNamed(const std::string& name) {
 }
 
 }  // namespace
-
-std::uint64_t worldContactId(int a, int b, std::uint64_t id) {
-  return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
-}
 
 ConstraintMaker::ConstraintMaker(const ContactConfig& config, StepThreads* threads)
     : config_(config), threads_(threads), method_(reductionNamed(config.reduction)), meetings_(threads) {}
@@ -119,7 +106,8 @@ void ConstraintMaker::addConstraints(const SolveAhead& ahead, const contact::Con
     constraint.damping = contact.weight * surface.damping;
     if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
     made_.constraints.push_back(constraint);
-    made_.solved.push_back({manifold.a, manifold.b, contact.id, manifold.layer, contact.pierced, 0, recovers});
+    made_.solved.push_back(
+        {manifold.a, manifold.b, contact.id, manifold.layer, contact.pierced, 0, recovers, bears(world, manifold, contact)});
   }
   made_.reduced += static_cast<int>(manifold.contacts.size());
   if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
@@ -132,7 +120,7 @@ void ConstraintMaker::addStops(const SimulatedWorld& world, const contact::Conta
     constraint.friction = friction;
     constraint.id = stopId(constraint.id);
     made_.constraints.push_back(constraint);
-    made_.solved.push_back({all.a, all.b, contact.id, all.layer, false, stop, false});
+    made_.solved.push_back({all.a, all.b, contact.id, all.layer, false, stop, false, true});
   }
 }
 

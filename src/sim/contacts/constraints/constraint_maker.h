@@ -8,14 +8,12 @@
 #include "blem_sim/dynamics/world_types.h"
 #include "blem_sim/reduction/reduction.h"
 #include "build/simulated_world.h"
+#include "contacts/constraints/contact_ids.h"
 #include "contacts/constraints/contact_meetings.h"
 #include "contacts/constraints/layer_stops.h"
 #include "threads/step_threads.h"
 
 namespace blem_sim::sim {
-
-/** Identity of a contact of a pair of colliders among those of all pairs, as the solver knows it (dynamics::ContactConstraint::id). */
-std::uint64_t worldContactId(int a, int b, std::uint64_t id);
 
 /** A contact in the solve: its pair, layer and kind. Goes with the constraint of the same index. */
 struct SolvedContact {
@@ -25,6 +23,7 @@ struct SolvedContact {
   bool pierced;
   double stop;    ///< [m] depth at which a layer's stop begins; 0 for other contacts
   bool recovers;  ///< of a pair of FoundContacts::crossings
+  bool bears;     ///< as bears() has it
 };
 
 /** Contacts as the solver takes them. */

@@ -91,7 +91,7 @@ void ContactMeetings::follow(const SolveAhead& ahead, std::size_t manifold, WayO
 }
 
 WayOfPair ContactMeetings::wayOfPair(const SolveAhead& ahead, const contact::ContactManifold& now) const {
-  WayOfPair way{now, wayOf(ahead, now.a), wayOf(ahead, now.b)};
+  WayOfPair way{ahead.world, now, wayOf(ahead, now.a), wayOf(ahead, now.b)};
   way.dt = ahead.dt;
   way.swing = ways_.swing(way.a.collider->body) + ways_.swing(way.b.collider->body);
   return way;
@@ -112,18 +112,19 @@ void ContactMeetings::lookAt(const SolveAhead& ahead, std::size_t manifold) {
   follow(ahead, manifold, &way);
 }
 
-void ContactMeetings::keepWhatTouches(const SolveAhead& ahead, std::size_t manifold) {
-  const std::vector<contact::Contact>& now = ahead.contacts.manifolds[manifold].contacts;
+void ContactMeetings::keepWhatBears(const SolveAhead& ahead, std::size_t manifold) {
+  const contact::ContactManifold& now = ahead.contacts.manifolds[manifold];
   std::vector<contact::Contact>* kept = room(manifold);
   kept->clear();
-  std::copy_if(now.begin(), now.end(), std::back_inserter(*kept), touches);
+  std::copy_if(now.contacts.begin(), now.contacts.end(), std::back_inserter(*kept),
+               [&](const contact::Contact& contact) { return bears(ahead.world, now, contact); });
   ++replaced_count_;
 }
 
 void ContactMeetings::lookAgain(const SolveAhead& ahead, std::size_t manifold) {
-  if (ahead.expected.bodies.empty()) return keepWhatTouches(ahead, manifold);
+  if (ahead.expected.bodies.empty()) return keepWhatBears(ahead, manifold);
   const contact::ContactManifold& now = ahead.contacts.manifolds[manifold];
-  WayOfPair way{now, expectedWayOf(ahead, now.a), expectedWayOf(ahead, now.b)};
+  WayOfPair way{ahead.world, now, expectedWayOf(ahead, now.a), expectedWayOf(ahead, now.b)};
   way.swing = changeOf(ahead, way);
   follow(ahead, manifold, &way);
 }

@@ -19,7 +19,7 @@ struct PairAside {
 /** Way of some pairs that is known better than from the velocities at hand. */
 struct Expectation {
   std::vector<PairAside> pairs;             ///< sorted by (a, b)
-  std::vector<dynamics::BodyState> bodies;  ///< states at the end of the solve; empty: contacts that do not touch are left out
+  std::vector<dynamics::BodyState> bodies;  ///< states at the end of the solve; empty: contacts that do not bear are left out
 };
 
 /** A solve that is to be made. */
@@ -67,7 +67,7 @@ class ContactMeetings {
   bool isDoubtful(const SolveAhead& ahead, const contact::ContactManifold& now) const;
   void lookAt(const SolveAhead& ahead, std::size_t manifold);
   void lookAgain(const SolveAhead& ahead, std::size_t manifold);
-  void keepWhatTouches(const SolveAhead& ahead, std::size_t manifold);
+  void keepWhatBears(const SolveAhead& ahead, std::size_t manifold);
   void follow(const SolveAhead& ahead, std::size_t manifold, WayOfPair* way);
   std::vector<contact::Contact>* room(std::size_t manifold);
 

@@ -8,6 +8,8 @@
 namespace blem_sim::sim {
 namespace {
 
+constexpr double ALIKE = 0.1;  // sine
+
 bool isOfRobot(const SimulatedWorld& world, int collider) {
   const contact::Collider& c = world.colliders[collider];
   return c.body != dynamics::WORLD_BODY && world.models[c.model].kind == ModelKind::ROBOT;
@@ -18,10 +20,11 @@ bool touchedBefore(const contact::ContactManifold* before, std::uint64_t id) {
                                [id](const contact::Contact& contact) { return contact.id == id && touches(contact); });
 }
 
-/** Whether a pair touches at the end of a solve where it did not at its start. */
-bool touchesAnew(const contact::ContactManifold* before, const contact::ContactManifold* after) {
-  return after && std::any_of(after->contacts.begin(), after->contacts.end(),
-                              [before](const contact::Contact& contact) { return touches(contact) && !touchedBefore(before, contact.id); });
+/** Whether a pair touches at the end of a solve, along a normal, where it did not at its start. */
+bool touchesAnew(const contact::ContactManifold* before, const contact::ContactManifold* after, const Vector3& normal_BA) {
+  return after && std::any_of(after->contacts.begin(), after->contacts.end(), [&](const contact::Contact& contact) {
+           return touches(contact) && !touchedBefore(before, contact.id) && (contact.normal_BA - normal_BA).norm() < ALIKE;
+         });
 }
 
 }  // namespace
@@ -35,7 +38,7 @@ bool EarlyPushes::isEarly(const SimulatedWorld& world, const MadeSolve& made, co
   const Vector3 across = sliding - contact.normal_BA.dot(sliding) * contact.normal_BA;
   if (across.norm() * made.dt <= ACROSS * of.layer) return false;
   return !touchesAnew(contact::findPair(made.start.manifolds, of.collider_a, of.collider_b),
-                      contact::findPair(found.manifolds, of.collider_a, of.collider_b));
+                      contact::findPair(found.manifolds, of.collider_a, of.collider_b), contact.normal_BA);
 }
 
 bool EarlyPushes::find(const SimulatedWorld& world, const MadeSolve& made, const FoundContacts& found) {
@@ -43,7 +46,7 @@ bool EarlyPushes::find(const SimulatedWorld& world, const MadeSolve& made, const
   std::vector<PairAside>& pairs = expectation_.pairs;
   const std::vector<Vector3>& forces = made.result.contact_forces;
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    if (made.contacts.constraints[i].depth >= -TOUCHING || forces[i].isZero(0)) continue;
+    if (made.contacts.solved[i].bears || forces[i].isZero(0)) continue;
     const PairAside pair{made.contacts.solved[i].collider_a, made.contacts.solved[i].collider_b};
     const bool known = !pairs.empty() && pairs.back().a == pair.a && pairs.back().b == pair.b;
     if (!known && isEarly(world, made, found, i)) pairs.push_back(pair);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "contacts/constraints/contact_ids.h"
+
 namespace blem_sim::sim {
 namespace {
 
@@ -47,6 +49,10 @@ const contact::Contact* find(It begin, It end, std::uint64_t id) {
 }
 
 }  // namespace
+
+bool bears(const SimulatedWorld& world, const contact::ContactManifold& pair, const contact::Contact& contact) {
+  return touches(contact) || world.world.pushed(worldContactId(pair.a, pair.b, contact.id));
+}
 
 bool PairWay::isDoubtful(const WayOfPair& pair) const {
   return std::any_of(pair.now.contacts.begin(), pair.now.contacts.end(), [&](const contact::Contact& contact) {
@@ -122,7 +128,7 @@ bool PairWay::follow(const WayOfPair& pair, const FlushSurfaces& flush, const st
   sortById(&met_.contacts);
   contacts->clear();
   for (const contact::Contact& contact : pair.now.contacts)
-    if (!acts(pair, contact) || (touches_ && isMetAsItIs(contact))) contacts->push_back(contact);
+    if (!acts(pair, contact) || (touches_ ? isMetAsItIs(contact) : bears(pair.world, pair.now, contact))) contacts->push_back(contact);
   const std::size_t kept = contacts->size();
   if (kept == pair.now.contacts.size()) return false;
   sortById(contacts);

@@ -17,6 +17,12 @@ constexpr double ACROSS = 0.01;    ///< layers that a pair moves across a normal
 
 inline bool touches(const contact::Contact& contact) { return contact.depth > -TOUCHING; }
 
+/**
+ * Whether a contact of a pair touches, or pushed in the last solve. That solve closed its gap along straight paths: what is left is how far
+ * they bent, as where a cam turns away from what rides on it.
+ */
+bool bears(const SimulatedWorld& world, const contact::ContactManifold& pair, const contact::Contact& contact);
+
 /** A collider at the start of the solve. */
 struct ColliderWay {
   const contact::Collider* collider;
@@ -27,6 +33,7 @@ struct ColliderWay {
 
 /** First state of a pair, and the time for which it is followed. */
 struct WayOfPair {
+  const SimulatedWorld& world;
   const contact::ContactManifold& now;  ///< its contacts
   ColliderWay a, b;
   double known = 0;                                    ///< [m] distance beyond the layers within which contacts are known
