@@ -96,6 +96,8 @@ struct Simulator::Impl {
   /** A contact of the part at hand, with its moments: its links have moved on since the step began. */
   ContactReport withMoments(ContactReport contact) const;
   void recordSolve(const dynamics::SolveResult& solved);
+  /** Says whether the step's contact forces miss Coulomb's law by too much. */
+  void recordMisses();
   void recordEnergy(const MadeSolve& made);
   void recordSaturation(const std::vector<dynamics::JointDrive>& drives);
   void report();

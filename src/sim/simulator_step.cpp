@@ -48,6 +48,7 @@ const StepReport& Simulator::Impl::step() {
   most_ticks_ = substeps_.nextMost();
   loads_.expire(time());
   if (substeps_.count() > 1) world_.world.setJointEfforts(part_reports_.efforts());
+  recordMisses();
   sensors();
   report();
   watchAttachments();

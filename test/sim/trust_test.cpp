@@ -246,5 +246,48 @@ TEST(EnergyGained, IsTheSameInARestoredRun) {
   }
 }
 
+/** Eight spokes, as a prism of 2 kg, roll down 0.1 rad at 4 rad/s. */
+SimulationConfig rollingOctagon() {
+  constexpr double SLOPE = 0.1, SPOKE = 0.2, LAYER = 1e-4, SPEED = 4, HEIGHT = 0.18477590650225735;  // SPOKE cos(pi / 8)
+  geometry::TriangleMesh octagon;
+  for (int i = 0; i < 8; ++i)
+    for (const double y : {-0.1, 0.1})
+      octagon.vertices.emplace_back(SPOKE * std::cos((i + 0.5) * M_PI / 4), y, SPOKE * std::sin((i + 0.5) * M_PI / 4));
+  for (int a = 0; a < 16; a += 2) {
+    const int b = (a + 2) % 16;
+    octagon.elements.insert(octagon.elements.end(), {{a, a + 1, b}, {b, a + 1, b + 1}});
+    if (a >= 2 && a < 14) octagon.elements.insert(octagon.elements.end(), {{0, a, b}, {1, b + 1, a + 1}});
+  }
+  SimulationConfig config;
+  config.time_step = 2.5e-4;
+  config.gravity = G * Vector3(std::sin(SLOPE), 0, -std::cos(SLOPE));
+  config.contact.surface.friction = 2;
+  config.contact.boundary_width = LAYER;
+  EnvironmentConfig plane;
+  plane.name = "plane";
+  plane.plane = Eigen::Vector4d(0, 0, 1, 0);
+  config.environments = {plane};
+  ObjectConfig wheel;
+  wheel.name = "wheel";
+  wheel.uri = meshFile("octagon", octagon);
+  wheel.mass = 2;
+  wheel.com = Vector3::Zero();
+  wheel.inertia = 0.02 * Matrix3::Identity();
+  wheel.X_WO = makePose({0, 0, HEIGHT + LAYER});
+  wheel.angular_velocity = {0, SPEED, 0};
+  wheel.linear_velocity = {SPEED * HEIGHT, 0, 0};
+  config.objects = {wheel};
+  return config;
+}
+
+/** Parts of a step that differ in length press the spoke with 0.2 N and 24 N in turn: what misses Coulomb's law is little of the mean. */
+TEST(SolverTrouble, NoneWhereOnePartOfAStepHardlyPushes) {
+  Simulator simulator(rollingOctagon(), model::UriResolver());
+  for (int i = 0; i < 1000; ++i) {
+    const StepReport& report = simulator.step();
+    ASSERT_EQ(report.status & SOLVER_TROUBLE, 0u) << i << ": " << report.solver_residual << " N";
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::sim
