@@ -91,7 +91,8 @@ class Lumping {
       moving.X_PJ = Pose::Identity();
     }
     lumped_.notes.push_back(
-        fmt::format("planar joint '{}' becomes the joints {}/x, {}/y and {}/yaw", joint.name, joint.name, joint.name, joint.name));
+        fmt::format("planar joint '{0}' becomes the joints {0}/x, {0}/y and {0}/yaw; what slides on them weighs {1:.1f} % more", joint.name,
+                    200 * VIRTUAL_MASS_RATIO));
   }
 
   /** Whether a fixed joint was kept at the root link of a body. */

@@ -143,6 +143,7 @@ TEST(LumpedRobot, planarJointBecomesTwoSlidesAndATurn) {
       EXPECT_GT(lumped.bodies[body].inertial.inertia.determinant(), 0);
     }
     EXPECT_TRUE(isNoted(lumped.notes, "planar joint 'base'"));
+    EXPECT_TRUE(isNoted(lumped.notes, "weighs 0.2 % more"));
   }
   const LumpedRobot flat =
       lumpFixedJoints(loadRobot(link("a") + link("b", "2") + jointOf("base", "planar", "a", "b", "<axis xyz=\"0 0 1\"/>")), {}, true);
