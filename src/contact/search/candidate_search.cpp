@@ -19,6 +19,8 @@ constexpr double FLOAT_ROUNDING = 1e-6;
 /** Rounding of directions: unit vectors, and products of edges relative to their lengths. */
 constexpr double FLOAT_TURN = 1e-5;
 constexpr std::uint32_t NOWHERE = CandidateListing::NOWHERE;
+/** Leaves of a fine mesh that a listing has room for at once: those of teeth, which come one by one. */
+constexpr std::size_t FIRST_LEAVES = 32;
 
 /** The pair as it was where the listing began. */
 MeshPair pairAt(const MeshPair& pair, const ListOrigin& origin) {
@@ -181,6 +183,7 @@ class Search {
     if (index != KeptLeaf::NO_INDEX) return index;
     std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[side];
     index = static_cast<std::uint32_t>(leaves.size());
+    if (leaves.capacity() == 0) leaves.reserve(std::min(FIRST_LEAVES, pair_.side(side).mesh.elements.size()));
     leaves.push_back({node});
     buffers_.found[side].push_back({found.is_described ? &describe(side, &found, &leaves.back()) : nullptr, nullptr});
     return index;
