@@ -280,7 +280,8 @@ SimulationConfig rollingOctagon() {
   return config;
 }
 
-/** Parts of a step that differ in length press the spoke with 0.2 N and 24 N in turn: what misses Coulomb's law is little of the mean. */
+/** Parts of a step that differ in length press the spoke with 0.2 N or less and with 24 N in turn: what misses the law of Coulomb is little
+ * of the mean. */
 TEST(SolverTrouble, NoneWhereOnePartOfAStepHardlyPushes) {
   Simulator simulator(rollingOctagon(), model::UriResolver());
   for (int i = 0; i < 1000; ++i) {
