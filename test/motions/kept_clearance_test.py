@@ -39,6 +39,11 @@ def test_a_foot_that_is_lifted_over_it_keeps_the_clearance(case):
     assert gap is None or gap["m"] >= 0.005
 
 
+def test_the_module_of_the_build_is_found_without_a_sourced_environment(case, monkeypatch):
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    assert case.plan(AT_STEPS, climb(0.005, 0.05))["phases"]
+
+
 def test_limbs_that_cross_are_refused(case):
     motion = changed(STEPS, clearance=0.0, phases=[{"name": "arms in", "duration": 2, "joints": {"left_shoulder": 0.0, "right_shoulder": 0.0}},
                                                    {"name": "feet together", "duration": 2, "move": {"right": {"by": [0, 0.16, 0], "lift": 0.05}}}])

@@ -4,11 +4,9 @@ import collections
 import numpy as np
 from sweeping.checked_yaml import InputError
 
-from planning.robot_file import ROOT
 from planning.robot_model import quaternion
+from planning.simulation import simulator
 from planning.tasks import RISEN, SINKS
-
-NO_MODULE = "'%s' needs the Python module of a built blem_sim (%s); run scripts/build and source scripts/env.bash, or leave the key out"
 
 SEEN = 0.02      # [m] beyond the clearance that is asked for, within which gaps are told
 NEAR_JOINTS = 2  # joints between links that cross as they bend, as a shin and a foot do at an ankle that turns about two axes
@@ -25,7 +23,7 @@ class Clearance:
         if robot.name is None:
             raise InputError("%s: clearance: a URDF has no world; name a configuration, or leave the key out" % motion.file)
         self.prefix, self.model = robot.name + "::", robot.model
-        self.scene = scene(motion.file, robot, packages)
+        self.scene = simulator("clearance", motion.file, robot.file, packages).clearance(robot.name)
         self.rows = [self.model.links.index(link) for link in self.scene.links]
         self.names = self.scene.colliders
 
@@ -55,18 +53,6 @@ class Clearance:
             if found and (worst is None or found[0] < worst[0]):
                 worst, number = found, k
         return (Gap(worst[0], worst[1], worst[2], number), worst[3]) if worst else (None, False)
-
-
-def scene(file, robot, packages):
-    """blem_sim.Clearance of a robot's configuration."""
-    try:
-        import blem_sim
-        simulator = blem_sim.Simulator(robot.file, packages=dict({"blem_sim": str(ROOT)}, **packages))
-    except ImportError as error:
-        raise InputError("%s: %s" % (file, NO_MODULE % ("clearance", error)))
-    except ValueError as error:
-        raise InputError(str(error))
-    return simulator.clearance(robot.name)
 
 
 def touching(model, contacts, holding, phase, share):

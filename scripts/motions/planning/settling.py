@@ -9,9 +9,9 @@ from kinematics import from_quaternion
 from sweeping.checked_yaml import InputError, read_yaml
 from sweeping.input_files import resolved
 
-from planning.clearance import NO_MODULE
 from planning.results import roll_pitch_yaw
 from planning.robot_file import ROOT
+from planning.simulation import simulator
 
 ROBOT_KEYS = ("name", "boundary_width", "friction", "restitution", "stiffness", "damping", "impact_friction_factor", "impact_friction_speed")
 GYRATION = 0.05         # [m] radius of gyration that the weight is given, about that of a foot
@@ -54,19 +54,13 @@ class Settling:
 
     def at_rest(self, contact, config):
         """Pose (x y z, quaternion x y z w) of the one link of a configuration once it rests."""
-        try:
-            import blem_sim
-            simulator = blem_sim.Simulator(config, packages=self.packages, folder=str(self.folder))
-        except ImportError as error:
-            raise InputError("%s: %s" % (self.motion.file, NO_MODULE % ("settles", error)))
-        except ValueError as error:
-            raise InputError(str(error))
+        world = simulator("settles", self.motion.file, config, self.packages, str(self.folder))
         for _ in range(int(round(LONGEST / LOOK))):
-            simulator.step(int(round(LOOK / simulator.time_step)))
-            if np.linalg.norm(simulator.poses[0][:3] - config["robots"][0]["pose"]["xyz"]) > FARTHEST:
+            world.step(int(round(LOOK / world.time_step)))
+            if np.linalg.norm(world.poses[0][:3] - config["robots"][0]["pose"]["xyz"]) > FARTHEST:
                 break
-            if np.abs(simulator.body_velocities[0]).max() < STILL:
-                return simulator.poses[0].copy()
+            if np.abs(world.body_velocities[0]).max() < STILL:
+                return world.poses[0].copy()
         raise InputError("%s: contacts.%s: settles: link '%s' does not come to rest within %g mm of where it is put down; choose a place on something, or"
                          " leave the key out" % (self.motion.file, contact.name, contact.link, 1e3 * FARTHEST))
 
