@@ -19,6 +19,11 @@ TYPES = ("fixed", "revolute", "continuous", "prismatic")
 Robot = collections.namedtuple("Robot", "file name number model posture gravity")
 
 
+def with_own(packages):
+    """Folders of packages by name, blem_sim's own among them unless another one is given."""
+    return dict({"blem_sim": str(ROOT)}, **packages)
+
+
 def read_robot(file, name, packages):
     """The robot of a name, or the only one. @param packages {name: folder} Raises InputError in one line."""
     if str(file).endswith((".urdf", ".xml")):
@@ -84,7 +89,7 @@ def pose_of(field):
 
 def read_tree(field, packages):
     """The tree of a URDF that a field names."""
-    path = resolved(field.text(), str(pathlib.Path(field.file).resolve().parent), dict({"blem_sim": str(ROOT)}, **packages))
+    path = resolved(field.text(), str(pathlib.Path(field.file).resolve().parent), with_own(packages))
     if path is None or not pathlib.Path(path).is_file():
         field.refuse("%s is no file; name one, and its package's folder by --package NAME=DIR" % field.shown())
     try:

@@ -10,7 +10,7 @@ from sweeping.checked_yaml import InputError, read_yaml
 from sweeping.input_files import resolved
 
 from planning.results import roll_pitch_yaw
-from planning.robot_file import ROOT
+from planning.robot_file import with_own
 from planning.simulation import simulator
 
 ROBOT_KEYS = ("name", "boundary_width", "friction", "restitution", "stiffness", "damping", "impact_friction_factor", "impact_friction_speed")
@@ -27,11 +27,11 @@ class Settling:
     def __init__(self, motion, robot, packages):
         if robot.name is None:
             raise InputError("%s: settles: a URDF has no world; name a configuration, or leave the key out" % motion.file)
-        self.motion, self.model, self.packages = motion, robot.model, dict({"blem_sim": str(ROOT)}, **packages)
+        self.motion, self.model, self.packages = motion, robot.model, packages
         self.folder = pathlib.Path(robot.file).resolve().parent
         self.config = read_yaml(robot.file)
         self.row = self.config["robots"][robot.number]
-        self.urdf = pathlib.Path(resolved(self.row["urdf"], str(self.folder), self.packages))
+        self.urdf = pathlib.Path(resolved(self.row["urdf"], str(self.folder), with_own(packages)))
         self.known = {}
 
     def rest(self, contact, frame):

@@ -37,7 +37,7 @@ constexpr std::size_t MEMORY_SIZE = 12;
 
 }  // namespace
 
-/** What the drive keeps from step to step, in the simulator. */
+/** Numbers that the simulator keeps for the drive from step to step. */
 struct DriveController::Memory {
   double steps = 0;         ///< when update was called last
   double command_time = 0;  ///< [s]

@@ -66,6 +66,14 @@ TEST(LimitedSpeed, WithJerkTakesTheTimeOfTheQuickestRamp) {
   }
 }
 
+TEST(LimitedSpeed, RampsBeginAndEndWithTheJerkOfThatSign) {
+  SpeedLimits limits = limitsOf(5, 1, 2);
+  limits.min_jerk = -4;
+  LimitedSpeed speed;
+  for (const double wanted : {1.0, 0.0})
+    EXPECT_NEAR(stepsUntil(wanted, limits, &speed) * STEP_TIME, 1 / 1.0 + (1 / 2.0 + 1 / 4.0) / 2, 3 * STEP_TIME) << wanted;
+}
+
 TEST(LimitedSpeed, KeepsItsLimitsWhateverIsWanted) {
   geometry::RandomShapes random(7);
   SpeedLimits limits = limitsOf(1, 3, 20);

@@ -24,17 +24,23 @@ TEST(EnergyGainedBit, IsNotSetBySpringsThatSwing) {
         }
 }
 
+/** A spring of 1e4 N/m below body 0 that is compressed by 1 mm, without a damper. */
+dynamics::ContactConstraint compressedSpring(const Vector3& normal_BA) {
+  dynamics::ContactConstraint spring;
+  spring.body_a = 0;
+  spring.normal_BA = normal_BA;
+  spring.depth = 1e-3;
+  spring.stiffness = 1e4;
+  spring.damping = 0;
+  return spring;
+}
+
 /** A corner turns about a body's centre of mass at 10 rad/s, so its spring is compressed, at the end by less than at the start. One that
  * rolls ends where its contact is found. */
 TEST(EnergyBalance, SpringsEndAtTheirPointsOrWhereTheyAreFound) {
   HandMadeSolve solve(1);
-  dynamics::ContactConstraint spring;
-  spring.body_a = 0;
+  dynamics::ContactConstraint spring = compressedSpring(Vector3::UnitZ());
   spring.point = {0.1, 0, -0.1};
-  spring.normal_BA = Vector3::UnitZ();
-  spring.depth = 1e-3;
-  spring.stiffness = 1e4;
-  spring.damping = 0;
   solve.contacts.constraints = {spring};
   solve.contacts.solved.resize(1);
   solve.contacts.solved[0].id = 7;
@@ -93,13 +99,7 @@ TEST(EnergyGainedBit, IsNotSetByCubesThatTumbleOnSprings) {
  */
 TEST(EnergyBalance, ASpringGivesNoMoreThanItHolds) {
   HandMadeSolve solve(1);
-  dynamics::ContactConstraint spring;
-  spring.body_a = 0;
-  spring.normal_BA = Vector3::UnitX();
-  spring.depth = 1e-3;
-  spring.stiffness = 1e4;
-  spring.damping = 0;
-  solve.contacts.constraints = {spring};
+  solve.contacts.constraints = {compressedSpring(Vector3::UnitX())};
   solve.contacts.solved.resize(1);
   for (const double speed : {0.07, 0.1}) {
     solve.after[0].v_WCom = {speed, 0, 0};
