@@ -79,8 +79,8 @@ using ContactRenames = std::vector<ContactRename>;
 /** One contact as the solver takes it. */
 struct ContactConstraint {
   int body_a = WORLD_BODY, body_b = WORLD_BODY;
-  Vector3 point, normal_BA;       ///< world
-  double depth = 0;               ///< [m], negative = gap
+  Vector3 point = Vector3::Zero(), normal_BA = Vector3::Zero();  ///< world
+  double depth = 0;                                              ///< [m], negative = gap
   double rolling = 0;             ///< [m] radius on which it rolls over both bodies; 0: it stands on one point of a body. For `articulated`
   Vector3 rim = Vector3::Zero();  ///< world: axis of a cylinder that rolls on the lowest point of a rim, as long as the rim's radius [m];
                                   ///< zero: none does. For `articulated`
