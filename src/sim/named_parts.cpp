@@ -109,9 +109,8 @@ std::optional<LinkPart> findFrame(const Simulator& simulator, const std::string&
 
 bool isWeightless(const Simulator& simulator, const LinkPart& part) {
   if (part.model < 0) return false;
-  const std::vector<WeightlessPart>& weightless = simulator.models()[part.model].weightless;
-  return std::any_of(weightless.begin(), weightless.end(),
-                     [&](const WeightlessPart& known) { return known.body == part.body && (known.link < 0 || known.link == part.link); });
+  const std::set<WeightlessPart>& weightless = simulator.models()[part.model].weightless;
+  return weightless.count({part.body, -1}) > 0 || weightless.count({part.body, part.link}) > 0;
 }
 
 }  // namespace blem_sim::sim

@@ -208,8 +208,11 @@ void Simulator::setPhysics(const Vector3& gravity, double time_step, double real
 }
 void Simulator::setLinkInertial(int body, int link, const geometry::MassProperties& inertial) {
   impl_->setLinkInertial(body, link, inertial);
-  const bool is_robot = impl_->world_.robotOf(impl_->modelOfBody(body)) >= 0;
-  impl_->tell("setLinkInertial", body, is_robot ? link : -1, inertial);
+  impl_->tell("setLinkInertial", body, impl_->isOfRobot(body) ? link : -1, inertial);
+}
+void Simulator::setLinkGravity(int body, int link, bool acts) {
+  impl_->setLinkGravity(body, link, acts);
+  impl_->tell("setLinkGravity", body, impl_->isOfRobot(body) ? link : -1, acts);
 }
 void Simulator::setJointLimits(int robot, int joint, double lower, double upper) {
   impl_->setJointLimits(robot, joint, lower, upper);

@@ -190,6 +190,7 @@ struct Simulator::Impl {
   /** The same, but what the solver knows of them. @return their ids there */
   std::vector<std::uint64_t> forgetPairs(const std::vector<int>& colliders);
   void setLinkInertial(int body, int link, const geometry::MassProperties& inertial);
+  void setLinkGravity(int body, int link, bool acts);
   void setJointLimits(int robot, int joint, double lower, double upper);
   void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
 
@@ -222,6 +223,7 @@ struct Simulator::Impl {
   void moveIntoLimits(int robot);
   void resetWorld();
   int modelOfBody(int body) const;
+  bool isOfRobot(int body) const { return world_.robotOf(modelOfBody(body)) >= 0; }
   geometry::MassProperties linkInertial(int body, int link) const;
 
   /** Tells the watcher, if there is one, of a call that was taken. */

@@ -45,6 +45,12 @@ std::set<std::string> keptJoints(const SimulatedWorld& world, int robot) {
   return joints;
 }
 
+/** @throws InputError: the robot has no link of that index */
+void requireLink(const RobotInfo& robot, int link) {
+  const int links = static_cast<int>(robot.description->links.size());
+  if (link < 0 || link >= links) throw InputError(fmt::format("'{}': has no link {}; its links are 0 to {}", robot.name, link, links - 1));
+}
+
 /** Tells motors what their efforts meet now that links weigh otherwise. */
 void weighLoads(const RobotInfo& robot, SimulatedWorld* world) {
   const auto jointOf = [&](std::size_t j) { return robot.world_joints[j]; };
@@ -131,8 +137,7 @@ void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassPr
     world_.world.setInertial(body, inertial);
   } else {
     RobotInfo& robot = world_.robots[index];
-    if (link < 0 || link >= static_cast<int>(robot.description->links.size()))
-      throw InputError(fmt::format("'{}': has no link {}; its links are 0 to {}", robot.name, link, robot.description->links.size() - 1));
+    requireLink(robot, link);
     const auto description = std::make_shared<model::RobotModel>(*robot.description);
     description->links[link].inertial = inertial;
     const auto lumped =
@@ -144,6 +149,18 @@ void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassPr
     sensors_.remake(world_, config_.time_step);
   }
   forgetContacts(world_.collidersOf(model));
+  layout_.clear();
+  reportWithoutStep();
+}
+
+void Simulator::Impl::setLinkGravity(int body, int link, bool acts) {
+  const int model = modelOfBody(body), robot = world_.robotOf(model);
+  if (robot >= 0) requireLink(world_.robots[robot], link);
+  const WeightlessPart part{body, robot >= 0 ? link : -1};
+  if (acts)
+    world_.models[model].weightless.erase(part);
+  else
+    world_.models[model].weightless.insert(part);
   layout_.clear();
   reportWithoutStep();
 }

@@ -144,6 +144,8 @@ class Simulator {
   void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
   /** Gives a robot's link, or an object's body, other mass properties in the link's frame. @throws InputError, nothing being changed */
   void setLinkInertial(int body, int link, const geometry::MassProperties& inertial);
+  /** Lets gravity act on a robot's link, or an object's body, or act no more. @throws InputError: the robot has no such link */
+  void setLinkGravity(int body, int link, bool acts);
   geometry::MassProperties linkInertial(int body, int link) const;  ///< @param link of the body's robot, -1: the body itself
   void setJointDamping(int robot, int joint, double damping);
   /** @throws InputError: limits that do not hold the joint's position, or of a joint that takes none */

@@ -7,7 +7,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,6 +26,8 @@ enum class ModelKind { ENVIRONMENT, ROBOT, OBJECT };
 struct WeightlessPart {
   int body = 0;
   int link = -1;  ///< of the robot's description; -1: the whole body
+
+  friend bool operator<(const WeightlessPart& a, const WeightlessPart& b) { return std::tie(a.body, a.link) < std::tie(b.body, b.link); }
 };
 
 /** A file whose faces are a surface that is simulated: scaled as told, otherwise where they are but for repairs too small to see. */
@@ -39,7 +43,7 @@ struct ModelInfo {
   std::vector<int> bodies;       ///< world bodies; [0] holds the root link
   std::vector<int> joints;       ///< world joints, movable ones, in the robot's order
   Pose X_WM = Pose::Identity();  ///< root link, object's frame or environment at the start
-  std::vector<WeightlessPart> weightless;
+  std::set<WeightlessPart> weightless;
   std::optional<SurfaceFile> file;  ///< of an environment, if it shows what is simulated
   bool alive = true;                ///< false: unloaded, and its slot is free
 };

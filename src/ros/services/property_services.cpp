@@ -57,14 +57,11 @@ void PropertyServices::setPhysics(const SetPhysicsProperties::Request& request, 
 void PropertyServices::setLink(const SetLinkProperties::Request& request) {
   const sim::LinkPart part = sim::findLink(loop_->simulator(), request.link_name, "link_name");
   if (part.body == dynamics::WORLD_BODY) throw InputError("link_name: '" + part.name + "' is fixed to the world; its mass means nothing");
-  if (request.gravity_mode == sim::isWeightless(loop_->simulator(), part))
-    throw InputError(request.gravity_mode ? "gravity_mode: gravity is off for this link by its URDF; take turnGravityOff out there"
-                                          : "gravity_mode: gravity acts on this link; set turnGravityOff in its URDF, or hold it by "
-                                            "apply_body_wrench with its weight upwards");
   const geometry::MassProperties inertial = requestedInertial(request);
   if (!(inertial.mass > 0) || !inertial.inertia.allFinite() || !inertial.com.allFinite() || inertial.inertia.llt().info() != Eigen::Success)
     throw InputError("mass, com, ixx to izz: need a finite mass above 0 and a positive definite inertia");
   loop_->simulator().setLinkInertial(part.body, part.link, inertial);
+  loop_->simulator().setLinkGravity(part.body, part.link, request.gravity_mode);
 }
 
 void PropertyServices::setJoint(const SetJointProperties::Request& request, SetJointProperties::Response* response) {

@@ -124,7 +124,7 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   model.joints = info_.joints;
   for (const std::string& link : config_.weightless_links) {
     const int index = model_->linkIndex(link), body = info_.bodies[lumped_->link_placement[index].body];
-    if (body != dynamics::WORLD_BODY) model.weightless.push_back({body, index});
+    if (body != dynamics::WORLD_BODY) model.weightless.insert({body, index});
   }
   model.X_WM = config_.X_WR;
   addSensors(world->addRobot(info_));

@@ -92,6 +92,11 @@ const std::map<std::string, Call> CALLS = {
        const int body = in.takeBody(), link = in.takeLinkOf(body);
        to.setLinkInertial(body, link, in.takeInertial());
      }},
+    {"setLinkGravity",
+     [](InputReader& in, Simulator& to) {
+       const int body = in.takeBody(), link = in.takeLinkOf(body);
+       to.setLinkGravity(body, link, in.take<bool>());
+     }},
     {"setJointDamping",
      [](InputReader& in, Simulator& to) {
        const int robot = in.takeRobot(), joint = in.takeJointOf(robot);

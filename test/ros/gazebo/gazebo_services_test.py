@@ -230,8 +230,18 @@ class GazeboServicesTest(unittest.TestCase):
                 self.near(xyz(self.cube().twist.linear), (0.1, 0, 0))
             self.refused("mass", "set_link_properties", mass=-1, **request)
             self.done("set_link_properties", mass=mass, **request)
-            request["gravity_mode"] = False
-            self.refused("gravity_mode", "set_link_properties", mass=mass, **request)
+
+    def test_gravity_of_a_link_is_switched(self):
+        names = ("mass", "ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+        found = self.done("get_link_properties", link_name="cube::link")
+        request = dict(link_name="cube::link", com=found.com, **{name: getattr(found, name) for name in names})
+        fall = 9.81 * 0.1
+        for acts, speed in ((False, 0), (True, -fall)):
+            self.put_cube()
+            self.done("set_link_properties", gravity_mode=acts, **request)
+            self.assertEqual(self.done("get_link_properties", link_name="cube::link").gravity_mode, acts)
+            sim_client.step(100)
+            self.near(xyz(self.cube().twist.linear), (0, 0, speed))
 
     def test_centre_of_mass_is_moved(self):
         """A link of a chain gets another centre of mass where it stands, and joints keep their places."""

@@ -297,7 +297,7 @@ def link_properties(random):
     if choice == 0:
         request.link_name = random.choice(NAMES + ("ground::link",))
     elif choice == 1:
-        request.gravity_mode = False
+        request.iyy = random.choice(NO_NUMBERS + (-1.0,))
     elif choice == 2:
         request.mass = random.choice(NO_NUMBERS + (0.0, -1.0))
     else:

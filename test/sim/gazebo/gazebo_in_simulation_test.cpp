@@ -176,6 +176,32 @@ TEST_P(Weightless, FollowGravityAndMassesThatAreSet) {
   EXPECT_LT(bodyOf(simulator, "pair").v_WCom.norm(), 1e-9);
 }
 
+/** One link of two, then both, then one again, whichever of them. */
+TEST_P(Weightless, AreThoseThatAreSwitched) {
+  SimulationConfig config;
+  config.solver.stepper = GetParam();
+  config.robots = {robot("pair", pairUrdf(WEIGHTLESS_B, "continuous"), false)};
+  Simulator simulator(config, model::UriResolver());
+  const std::vector<int> bodies = simulator.models()[0].bodies;
+  double momentum = 0;  // [N s]
+  const auto stepWith = [&](double mass_that_falls) {
+    const double before = momentum;
+    simulator.step();
+    momentum = 0;
+    for (const int body : bodies) momentum += simulator.world().bodySpec(body).inertial.mass * simulator.report().bodies[body].v_WCom.z();
+    EXPECT_NEAR(momentum - before, -mass_that_falls * G * 0.001, 1e-9);
+    EXPECT_LT(simulator.report().energy_out_of_nothing, 1e-9);
+  };
+  stepWith(1);
+  simulator.setLinkGravity(bodies[0], 0, false);
+  stepWith(0);
+  simulator.setLinkGravity(bodies[1], 1, true);
+  stepWith(1);
+  simulator.setLinkGravity(bodies[0], 0, true);
+  stepWith(2);
+  EXPECT_THROW(simulator.setLinkGravity(bodies[0], 7, true), InputError);
+}
+
 INSTANTIATE_TEST_SUITE_P(Steppers, Weightless, testing::Values("articulated", "world_step", "quick_step"));
 
 TEST(GazeboInSimulation, GravityIsTurnedOffForAllOfAnObjectOrForNone) {

@@ -87,6 +87,7 @@ std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& ear
       [](Simulator& s) { s.setFriction(s.modelIndex("cube"), 0.11); },
       [](Simulator& s) { s.setJointLimits(1, 0, -2, 2); },
       [=](Simulator& s) { s.setLinkInertial(s.robots()[1].bodies[1], 1, heavier); },
+      [](Simulator& s) { s.setLinkGravity(s.robots()[1].bodies[1], 1, false); },
       [](Simulator& s) {
         s.setPhysics({0.1, 0, -9}, 0.0005, 1);
       },

@@ -25,6 +25,8 @@ double changeOf(const SolveAhead& ahead, const WayOfPair& way) {
   return largest;
 }
 
+bool falls(const ModelInfo& model) { return model.kind == ModelKind::OBJECT && model.weightless.empty(); }
+
 }  // namespace
 
 void ContactMeetings::findSupports(const SimulatedWorld& world, const FoundContacts& contacts) {
@@ -52,7 +54,7 @@ ColliderWay ContactMeetings::wayOf(const SolveAhead& ahead, int collider) const 
   const contact::Collider& c = world.colliders[collider];
   const BodyTwist now = twistOf(world, ahead.bodies, c.body);
   ColliderWay way{&c, ahead.contacts.watched.motion[collider].X_WC, now.centre, now};
-  if (c.body != dynamics::WORLD_BODY && world.models[c.model].kind == ModelKind::OBJECT && !supports_[c.body].touches)
+  if (c.body != dynamics::WORLD_BODY && falls(world.models[c.model]) && !supports_[c.body].touches)
     way.twist.v += ahead.dt * world.world.gravity();
   way.twist = surfaceTwist(c, way.X_WC, way.twist);
   return way;
