@@ -140,7 +140,7 @@ void IslandHeap::sweepAndPolish(const NewtonSettings& settings, NewtonReport* re
   const bool nearly = first_change <= NEARLY;
   // Sweeps do not converge in towers, where a push has a long way to go.
   const bool faulty = sweeps.last_change > SWEPT || faultsWithCreep(found, island_->terms()->contacts) > 1;
-  const bool polishes = island_->model.isCrowd() ? nearly : quiet || faulty;
+  const bool polishes = !island_->model.isCrowd() && (quiet || faulty);
   finishSwept(isLarge() && !nearly ? inFewSteps(settings) : settings, found, polishes, report);
 }
 
