@@ -131,6 +131,12 @@ void meshHalfSpace(const MeshOverPlane& pair, double range, SearchRoom* room, Co
 /** [m] By how much contacts of a cylinder's mesh may be farther than those of the cylinder. */
 double bulgeOf(const CollisionGeometry& geometry) { return geometry.cylinder() ? geometry.cylinder()->bulge() : 0; }
 
+/** [m] By which the mesh of a cylinder may be farther than its rim's lowest point, at the vertex beside the one that is nearest to it. */
+double besideLowestOf(const CollisionGeometry& geometry) {
+  const geometry::Cylinder* const cylinder = geometry.cylinder();
+  return cylinder ? cylinder->radius * (1 - std::cos(2 * M_PI / cylinder->sides)) : 0;
+}
+
 }  // namespace
 
 struct NarrowPhaseMemory::Impl {
@@ -176,7 +182,7 @@ void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowP
   } else if (a_is_half_space) {
     meshHalfSpace({b, a, {Side::FIXED, {r_b, r_a}}}, range + bulges, room, out);
   } else {
-    const MeshPair pair = meshPair(a, b, asked.margin + bulges);
+    const MeshPair pair = meshPair(a, b, asked.margin + besideLowestOf(*a.collider.geometry) + besideLowestOf(*b.collider.geometry));
     if (asked.memory)
       asked.memory->impl_->find(pair, asked.X_AB_apart, room, out);
     else

@@ -191,6 +191,67 @@ TEST(OnCylinders, BothRimsMeetAnEdgeAlike) {
   }
 }
 
+/** A trough along y of a radius, whose bottom is the origin, of facets between which it turns by an angle. */
+geometry::TriangleMesh troughMesh(double radius, double turn) {
+  const int half = static_cast<int>(0.4 / turn);
+  geometry::TriangleMesh mesh = geometry::gridMesh(2 * half, 1, 2 * half, 1);
+  for (Vector3& v : mesh.vertices) v = Vector3(radius * std::sin(turn * v.x()), v.y(), radius - radius * std::cos(turn * v.x()));
+  return mesh;
+}
+
+/** Lowest point of a rim over one facet of a trough. */
+struct LowestPlace {
+  Vector3 normal;   // of the facet
+  double distance;  // [m]
+};
+
+/** Lowest points of a wheel's rims over those facets of a trough that they are over. */
+std::vector<LowestPlace> lowestPlaces(const Pose& X_WK, double radius, double turn) {
+  std::vector<LowestPlace> places;
+  const Vector3 axis = X_WK.linear().col(2);
+  const int half = static_cast<int>(0.4 / turn);
+  for (int i = -half; i < half; ++i)
+    for (const bool is_upper : {false, true}) {
+      const double slope = turn * (i + 0.5), chord = radius * std::sin(0.5 * turn);
+      const Vector3 normal(-std::sin(slope), 0, std::cos(slope)), along(std::cos(slope), 0, std::sin(slope));
+      const Vector3 lowest = X_WK.translation() + (is_upper ? HALF_WIDTH : -HALF_WIDTH) * axis +
+                             WHEEL * (normal.dot(axis) * axis - normal).normalized() - Vector3(0, 0, radius);
+      if (std::abs(along.dot(lowest)) <= chord) places.push_back({normal, radius * std::cos(0.5 * turn) + normal.dot(lowest)});
+    }
+  return places;
+}
+
+/** Facets narrower and wider than a side of the wheel's mesh, which turn by less than a side does. */
+TEST(OnCylinders, RimsMeetAllFacetsOfATrough) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI), part(-0.2, 0.2), x(-0.05, 0.05);
+  for (const auto& [radius, turn] : {std::pair{0.5, 0.002}, {0.5, 0.02}, {2.0, 0.02}, {0.3, 0.08}}) {
+    const Collider round = wheel(), trough = makeCollider(troughMesh(radius, turn), 0);
+    for (int i = 0; i < 300; ++i) {
+      Pose X = rolled(WHEEL, i % 2 == 0 ? 0 : part(random), angle(random), i % 3 == 0 ? 0 : part(random));
+      X.translation().x() = x(random);
+      std::vector<LowestPlace> places;
+      for (int k = 0; k < 30; ++k) {  // the nearest place is 1 mm away
+        places = lowestPlaces(X, radius, turn);
+        double least = INFINITY;
+        for (const LowestPlace& place : places) least = std::min(least, place.distance);
+        X.translation().z() += 1e-3 - least;
+      }
+      const ContactManifold manifold = contactsOf(round, X, trough, Pose::Identity(), 1e-3);
+      EXPECT_NEAR(WHEEL_LAYER - manifold.maxDepth(), 1e-3, 1e-8) << radius << " " << turn << " " << i;
+      for (const LowestPlace& place : places) {
+        if (place.distance > 1.2e-3) continue;
+        EXPECT_TRUE(std::any_of(manifold.contacts.begin(), manifold.contacts.end(),
+                                [&](const Contact& c) {
+                                  return std::abs(WHEEL_LAYER - c.depth - place.distance) < 1e-8 &&
+                                         (c.normal_BA - place.normal).norm() < 1e-8;
+                                }))
+            << radius << " " << turn << " " << i << " " << place.distance;
+      }
+    }
+  }
+}
+
 /** Parallel wheels, one of them shifted along its axis, and crossed ones. */
 TEST(OnCylinders, CylindersMeetCylinders) {
   std::mt19937 random(4);

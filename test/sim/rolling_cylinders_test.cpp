@@ -104,6 +104,32 @@ TEST(RollingCylinders, ALogRollsOverAGapBetweenBoxes) {
   EXPECT_NEAR(bodyOf(simulator, "log").X_WB.translation().z(), 0.1, 1e-5);
 }
 
+/** A valley that turns by less than a side of the log's mesh: the log hits its far side as McGeer's wheel would, nowhere deeper. */
+TEST(RollingCylinders, ALargeLogRollsThroughAShallowValley) {
+  constexpr double TURN = 0.02, SPEED = 1;
+  const SolidCylinder log{0.5, 0.5, 10};
+  const double bottom = -log.radius * std::tan(TURN / 2), start = bottom - 0.1;
+  EnvironmentConfig valley;
+  valley.name = "valley";
+  geometry::TriangleMesh mesh = geometry::gridMesh(4, 1, 2, 1);
+  for (Vector3& v : mesh.vertices) v.z() = std::max(0.0, v.x()) * std::tan(TURN);
+  valley.uri = meshFile("valley", mesh);
+  for (const double turned : {0.0, 0.04, 0.09}) {
+    SimulationConfig config = roundConfig(0.8, LAYER_OF_LOG);
+    config.environments = {valley};
+    config.objects = {cylinderAlongY("log", log, {start, 0, log.radius})};
+    config.objects[0].X_WO = config.objects[0].X_WO * makePose({0, 0, 0}, {0, 0, turned});
+    roll(SPEED, log.radius, &config.objects[0]);
+    Simulator simulator(config, model::UriResolver());
+    double deepest = 0;
+    for (int i = 0; i < 200; ++i)
+      for (const ContactReport& contact : simulator.step().contacts) deepest = std::max(deepest, contact.depth);
+    EXPECT_LT(deepest, 1e-8) << turned;
+    const double theory = SPEED * (std::cos(TURN) + 0.5) / 1.5 - G * std::sin(TURN) / 1.5 * 0.1 / SPEED;
+    EXPECT_NEAR(bodyOf(simulator, "log").v_WCom.norm(), theory, 1e-4) << turned;
+  }
+}
+
 TEST(RollingCylinders, ACanRollsDownStepsStraightAndGainsNothing) {
   const SolidCylinder can{0.041, 0.1, 0.4};
   for (const double restitution : {0.0, 0.5}) {

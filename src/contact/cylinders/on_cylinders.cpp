@@ -21,9 +21,11 @@ constexpr double ON_MESH = 1e-7;  // [m] from the mesh; points farther away are 
 /** A cylinder in the world, and the surface that it meets. */
 class RoundSide {
  public:
-  RoundSide(const PlacedCollider& own, const PlacedCollider& other, bool is_a)
+  /** @param contacts of the pair */
+  RoundSide(const PlacedCollider& own, const PlacedCollider& other, bool is_a, const std::vector<Contact>& contacts)
       : own_(own),
         other_(other),
+        contacts_(contacts),
         cylinder_(*own.collider.geometry->cylinder()),
         is_a_(is_a),
         is_named_by_place_(own.collider.body >= 0),
@@ -39,10 +41,13 @@ class RoundSide {
   /** A rim as a whole; the middle of the flat end, which has no contacts, lends its name. */
   Feature rim(bool is_upper) const { return {FeatureKind::VERTEX, 2 * cylinder_.sides + is_upper}; }
   void rename(const Feature& own, const Feature& other, Contact* contact) const;
+  Vector3 rimVertex(int index) const { return cylinder_.X_GK.inverse() * own_.collider.geometry->mesh().vertices[index]; }
   /** Unit, in the cylinder's frame: towards the other surface. */
   Vector3 towardsOther(const Contact& contact) const { return X_WK_.linear().transpose() * (is_a_ ? -1 : 1) * contact.normal_BA; }
   void overPlane(int vertex, Contact* contact) const;
+  NearestPlace placeOf(int vertex, const Contact& contact) const;
   bool toWhatItMeets(int vertex, const Vector3& towards, Contact* contact) const;
+  bool standsIn(int vertex, int nearest, const Vector3& towards, Contact* contact) const;
   void atPoint(Contact* contact) const;
   void atCylinder(int own_rim, Contact* contact) const;
   bool set(const NearestPlace& place, Contact* contact) const;
@@ -50,6 +55,7 @@ class RoundSide {
   SurfaceDescent descent() const { return {cylinder_, *other_.collider.geometry, X_KO_, ROLLS}; }
 
   const PlacedCollider &own_, &other_;
+  const std::vector<Contact>& contacts_;
   const geometry::Cylinder& cylinder_;
   const bool is_a_, is_named_by_place_;
   const Pose X_WK_, X_KO_;
@@ -105,6 +111,9 @@ void RoundSide::overPlane(int vertex, Contact* contact) const {
     const double lower = way.dot(towards);
     contact->point += X_WK_.linear() * (way - 0.5 * lower * towards);
     contact->depth += lower;
+  } else if (lean >= ROLLS_ALONE && (from_lowest == 1 || from_lowest == sides - 1) && otherFeature(*contact).kind == FeatureKind::FACE &&
+             standsIn(vertex, 2 * nearest_line + vertex % 2, towards, contact)) {
+    return;
   } else if (2 * from_lowest != sides || lean > SLAPS) {  // the opposite one stays: an end that slaps down stops there
     contact->depth -= lean < ROLLS_ALONE ? cylinder_.radius * std::max(0.0, lean - ROLLS) : std::numeric_limits<double>::infinity();
   }
@@ -113,19 +122,39 @@ void RoundSide::overPlane(int vertex, Contact* contact) const {
          contact);
 }
 
+/** Face of a contact, the rim's vertex that has it and the place on the other surface; in the cylinder's frame. */
+NearestPlace RoundSide::placeOf(int vertex, const Contact& contact) const {
+  return {otherFeature(contact), rimVertex(vertex), X_WK_.inverse() * witnessOf(contact, other_.collider.radius, !is_a_)};
+}
+
 /**
  * Moves a contact of a rim's vertex that is nearest to its lowest point, which may be beyond the face, or over it where the vertex is not.
  * @param towards unit, to the face, in the cylinder's frame @return false where the vertex tells what the rim meets
  */
 bool RoundSide::toWhatItMeets(int vertex, const Vector3& towards, Contact* contact) const {
-  const Pose X_KW = X_WK_.inverse();
-  const Vector3 own = cylinder_.X_GK.inverse() * own_.collider.geometry->mesh().vertices[vertex];
-  const bool fades = (X_KW * witnessOf(*contact, own_.collider.radius, is_a_) - own).norm() > ON_MESH;
-  const Feature face = otherFeature(*contact);
-  NearestPlace place{face, own, X_KW * witnessOf(*contact, other_.collider.radius, !is_a_)};
+  const Vector3 own = X_WK_.inverse() * witnessOf(*contact, own_.collider.radius, is_a_);
+  NearestPlace place = placeOf(vertex, *contact);
+  const bool fades = (own - place.on_cylinder).norm() > ON_MESH;
+  const Feature face = place.feature;
   if (!descent().descendFrom(-towards, &place)) return false;
   const bool is_over_face = place.feature.kind == face.kind && place.feature.index == face.index;
   return (fades || !is_over_face) && set(place, contact);
+}
+
+/**
+ * Moves a contact of the vertex beside the one that is nearest to the rim's lowest point, where that one has none so deep with the
+ * face: in a valley it may be over the other side. @return false where it stays
+ */
+bool RoundSide::standsIn(int vertex, int nearest, const Vector3& towards, Contact* contact) const {
+  const Feature face = otherFeature(*contact);
+  const auto isOfNearest = [&](const Contact& c) {
+    const Feature own = ownFeature(c), other = otherFeature(c);
+    return c.depth >= contact->depth && other.kind == face.kind && other.index == face.index && own.kind == FeatureKind::VERTEX &&
+           (own.index == nearest || own.index == rim(nearest % 2 == 1).index);
+  };
+  if (std::any_of(contacts_.begin(), contacts_.end(), isOfNearest)) return false;
+  NearestPlace place = placeOf(vertex, *contact);
+  return descent().descendFrom(-towards, &place) && set(place, contact);
 }
 
 /** Whether a point of the cylinder's frame lies on the mesh's mantle. */
@@ -214,7 +243,7 @@ void moveOntoCylinders(const PlacedCollider& a, const PlacedCollider& b, double 
   for (const bool is_a : {true, false}) {
     const PlacedCollider &own = is_a ? a : b, &other = is_a ? b : a;
     if (!own.collider.geometry->cylinder()) continue;
-    const RoundSide side(own, other, is_a);
+    const RoundSide side(own, other, is_a, manifold->contacts);
     for (Contact& contact : manifold->contacts) side.move(&contact);
   }
   std::vector<Contact>& contacts = manifold->contacts;

@@ -152,21 +152,42 @@ bool SurfaceDescent::findFaceBeside(const Vector3& towards, NearestPlace* place)
   return found;
 }
 
-/** Sets the points to the rim's lowest one and its foot, or the feature to the edge over which the foot leaves the plane's faces. */
+/**
+ * Sets the points to the rim's lowest one and its foot, over the face or over one that rises beside it by less than a side turns, or the
+ * feature to the edge over which the foot leaves their planes.
+ */
 SurfaceDescent::OverFace SurfaceDescent::overFace(const Vector3& towards, NearestPlace* place) const {
-  const Vector3 normal = X_KO_.linear() * geometry::MeshTopology::normal(surface_.mesh(), place->triangle);
-  const Vector3 up = normal.dot(towards) < 0 ? Vector3(-normal) : normal;
+  const double side_turn = 2 * M_PI / cylinder_.sides;
+  Vector3 up = towards;
+  for (int i = 0; i < MOST_TRIANGLES; ++i) {
+    const Vector3 normal = X_KO_.linear() * geometry::MeshTopology::normal(surface_.mesh(), place->triangle);
+    up = normal.dot(up) < 0 ? Vector3(-normal) : normal;
+    if (std::hypot(up.x(), up.y()) < rolls_) return OverFace::NOT_ROLLING;
+    const int edge = putLowest(up, place);
+    if (edge == geometry::MeshTopology::NO_EDGE) return OverFace::STAYS;
+    int face = -1;
+    const double slope = steepestBeside(edge, up, &face);
+    if (slope <= CONE_SLACK) {
+      place->feature = {FeatureKind::EDGE, edge};
+      return OverFace::LEAVES;
+    }
+    if (slope > side_turn) return OverFace::STAYS;
+    place->feature = {FeatureKind::FACE, surface_.topology().patchOf(face)};
+    place->triangle = face;
+  }
+  return OverFace::STAYS;
+}
+
+/** Sets the points to the rim's lowest one and its foot. @return edge over which the foot leaves the plane's faces, or NO_EDGE */
+int SurfaceDescent::putLowest(const Vector3& up, NearestPlace* place) const {
   const double lean = std::hypot(up.x(), up.y());
-  if (lean < rolls_) return OverFace::NOT_ROLLING;
   const double z = std::copysign(cylinder_.half_length, isAtRim(cylinder_, place->on_cylinder) ? place->on_cylinder.z() : -up.z());
   const Vector3 lowest(-cylinder_.radius / lean * up.x(), -cylinder_.radius / lean * up.y(), z);
   const Vector3 foot = lowest - up.dot(lowest - vertex(surface_.mesh().elements[place->triangle][0])) * up;
   const int edge = leftOver(place->on_surface, foot, &place->triangle);
   place->on_surface = foot;
   place->on_cylinder = lowest;
-  if (edge == geometry::MeshTopology::NO_EDGE || rises(edge, up)) return OverFace::STAYS;
-  place->feature = {FeatureKind::EDGE, edge};
-  return OverFace::LEAVES;
+  return edge;
 }
 
 /** Triangle of the face's plane that is nearest to on_surface; -1 if none is near. */
@@ -210,10 +231,16 @@ int SurfaceDescent::leftOver(const Vector3& from, const Vector3& to, int* triang
   return geometry::MeshTopology::NO_EDGE;
 }
 
-/** Whether a face beside the edge rises from the plane below. */
-bool SurfaceDescent::rises(int edge, const Vector3& up) const {
-  const geometry::EdgeFaces faces = surface_.topology().facesOf(edge);
-  return std::any_of(faces.begin(), faces.end(), [&](int face) { return into(edge, face).dot(up) > CONE_SLACK; });
+/** Sine by which the steepest face beside the edge rises from the plane below; 0 if none does. @param face set to it */
+double SurfaceDescent::steepestBeside(int edge, const Vector3& up, int* face) const {
+  double steepest = 0;
+  for (const int beside : surface_.topology().facesOf(edge)) {
+    const double slope = into(edge, beside).dot(up);
+    if (slope <= steepest) continue;
+    steepest = slope;
+    *face = beside;
+  }
+  return steepest;
 }
 
 }  // namespace blem_sim::contact

@@ -22,8 +22,8 @@ bool isAtRim(const geometry::Cylinder& cylinder, const Vector3& x);
 
 /**
  * Walks from feature to feature of a surface as a cylinder's distance leads it: where the way between nearest points leads into a face
- * beside their edge, to the rim's lowest point over that face; where that point lies beyond the face's plane, to the edge between. So what
- * a side of the mesh meets, up to half a side beside, becomes what the cylinder meets.
+ * beside their edge, to the rim's lowest point over that face; where that point lies beyond the face's plane, to the edge between, or on to
+ * the next face of a shallow valley. So what a side of the mesh meets, up to half a side beside, becomes what the cylinder meets.
  */
 class SurfaceDescent {
  public:
@@ -51,10 +51,11 @@ class SurfaceDescent {
   bool findEdgeAt(int vertex, const Vector3& towards, NearestPlace* place) const;
   bool findFaceBeside(const Vector3& towards, NearestPlace* place) const;
   enum class OverFace { STAYS, LEAVES, NOT_ROLLING };
-  OverFace overFace(const Vector3& up, NearestPlace* place) const;
+  OverFace overFace(const Vector3& towards, NearestPlace* place) const;
+  int putLowest(const Vector3& up, NearestPlace* place) const;
   int triangleNear(const NearestPlace& place) const;
   int leftOver(const Vector3& from, const Vector3& to, int* triangle) const;
-  bool rises(int edge, const Vector3& up) const;
+  double steepestBeside(int edge, const Vector3& up, int* face) const;
 
   const geometry::Cylinder& cylinder_;
   const CollisionGeometry& surface_;
