@@ -15,6 +15,7 @@
 #include "island/tree_state.h"
 #include "kept_trees.h"
 #include "problem/contact_work.h"
+#include "problem/joint_leads.h"
 #include "step_islands.h"
 
 namespace blem_sim::dynamics {
@@ -185,6 +186,7 @@ bool ArticulatedStepper::solveOnce(const TermSource& source, Island* island) {
   forTrees(model, island->solver.team(), [&](int tree) { setFreeMomentum(ahead(source, *island, tree), &motion_, &space_); });
   makeTerms(source, island);
   model.up = -source.scene.gravity();
+  setLeads(source, model.trees, &island->solver.terms()->joints, &motion_, &space_);
   addEfforts(source.input, *island->solver.terms(), &space_);
   const bool leaps = leap(source, island);
   island->report = solveBounded(source, island);

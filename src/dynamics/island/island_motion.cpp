@@ -5,6 +5,7 @@
 
 #include "island/tree_pace.h"
 #include "problem/island_at_hand.h"
+#include "problem/joint_leads.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
 constexpr double ONE_MOTION = 1e-6;  // of the fastest body's velocities: welded bodies that differ by less move as one, but for rounding
-
-constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
 
@@ -58,7 +57,7 @@ void setHold(const JointTerm& joint, double velocity, const Forest& forest, cons
   const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
   const double lower = joint.lowerImpulse(velocity), upper = joint.upperImpulse(velocity), change = velocity - motion.velocity[k];
   const MovedAlong along = lower > 0 || upper > 0 ? movedAlong(forest, motion, k) : MovedAlong();
-  way->held()[k] = joint.stiffness(velocity) > HOLDS * motion.mass[forest.diagonal(k)];
+  way->held()[k] = keepsVelocity(joint, velocity, motion.mass[forest.diagonal(k)]);
   way->most[k] = lower > 0 ? INFINITY : reach + pressOn(-1, upper, change, along);
   way->least[k] = upper > 0 ? -INFINITY : -reach - pressOn(1, lower, change, along);
 }
@@ -204,7 +203,7 @@ void followAlone(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* spac
 }
 
 void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space) {
-  for (const JointTerm& j : terms.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
+  for (const JointTerm& j : terms.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort() + j.viscousLead();
 }
 
 double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space) {

@@ -40,7 +40,7 @@ void followAlone(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* spac
 /** Follows the free motion of fast trees from the velocities that were solved. @return false if one was too fast to be followed */
 bool followFast(const SolvedIsland& island, const ForestMotion& motion, const SolverSpace& space, FreeMotion* way);
 
-/** Adds the efforts given in advance. */
+/** Adds the efforts given in advance, and what viscous friction has of leads. */
 void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space);
 
 /**

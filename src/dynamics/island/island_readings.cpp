@@ -16,7 +16,7 @@ void readJoint(const JointTerm& j, double v, const StepInput& input, SolveResult
   record->dry_change = std::abs(record->dry) < bound && std::abs(last) < bound ? record->dry - last : 0;
   const JointDrive& drive = input.drives[j.joint];
   result->motor_efforts[j.joint] = drive.effort + j.motorImpulse(v) / dt;
-  result->axis_efforts[j.joint] = drive.givenEffort() + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / dt;
+  result->axis_efforts[j.joint] = drive.givenEffort() + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v + j.viscousLead()) / dt;
 }
 
 // A mimic joint feels its master's pull, the master its reaction.

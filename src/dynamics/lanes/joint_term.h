@@ -32,6 +32,7 @@ struct JointTerm {
   double velocity_gain = 1;  ///< impulse at most velocity_gain (max_velocity - v), at least velocity_gain (min_velocity - v)
   double min_velocity = -INFINITY, max_velocity = INFINITY;
   double viscous = 0;   ///< h mu_V
+  double lead = 0;      ///< by which the joint is faster in the middle of a fast tree's free way than where it sets out
   double softness = 1;  ///< divides the gains of friction and limits
   double dry_gain = 0;  ///< impulse dry_previous - dry_gain / softness * v, within +-dry_bound
   double dry_previous = 0;
@@ -62,6 +63,12 @@ struct JointTerm {
     if (wanted < -motor_bound) return {-motor_bound, 0};
     return {piece.gain * piece.velocity, piece.gain};
   }
+  /** Lets motor and viscous friction answer to the velocity v + lead; what friction has of the lead is viscousLead. */
+  void setLead(double faster) {
+    lead = faster;
+    motor_velocity -= lead;
+  }
+  double viscousLead() const { return -viscous * lead; }
   double dryImpulse(double v) const { return std::clamp(dry_previous - dry_gain / softness * v, -dry_bound, dry_bound); }
   double lowerImpulse(double v) const {
     return limit_gain > 0 ? std::max(0.0, lower_previous + limit_gain / softness * (lower_velocity - v)) : 0;

@@ -173,6 +173,25 @@ struct ArmWithSlider : Chain {
   }
 };
 
+// A spring and a damper hold the slider against the centrifugal force: k x = m w^2 (r + x), however strong the damper.
+TEST(WorkingMotion, DampersTakeNothingFromASpringThatWhirlsRound) {
+  constexpr double SPIN = 20, SPRING = 1000;
+  const double pull = 0.3 * SPIN * SPIN, theory = pull * SLIDER_ARM / (SPRING - pull);
+  for (const double time_step : {1e-3, 4e-3}) {
+    for (const double share : {0.03, 0.3}) {  // of the slider's mass, by which the damper answers in a step
+      for (const bool is_motors : {true, false}) {
+        ArmWithSlider chain(SPIN, 0.1, 0);
+        chain.drives[0].target_velocity = SPIN;
+        chain.drives[0].damping = 1e5;
+        chain.drives[1].stiffness = SPRING;
+        (is_motors ? chain.drives[1].damping : chain.drives[1].viscous_friction) = share * 0.3 / time_step;
+        for (int i = 0; i < 4 / time_step; ++i) chain.step(time_step);
+        EXPECT_NEAR(chain.world.jointState(1).position, theory, 1e-3 * theory) << time_step << " " << share << " " << is_motors;
+      }
+    }
+  }
+}
+
 // What stopped the slider in one step presses on nothing in the next, where it would push the slider off.
 TEST(WorkingMotion, StopThatWasHitDoesNotPushOff) {
   for (const double spin : {5, 20, 40}) {

@@ -2,6 +2,7 @@
 #include "guard/energy_balance.h"
 
 #include <cmath>
+#include <iterator>
 
 #include "sim/guard/booked_solves.h"
 
@@ -219,12 +220,12 @@ TEST(EnergyOutOfNothing, IsNoneWhereAnArmStretches) {
   }
 }
 
-/** Motors without an effort limit tear the arm out of rest; stiff joints keep their velocity on the free way, and pay in the next step. */
-TEST(EnergyOutOfNothing, IsHardlyAnyWhereMotorsThrowAnArmAbout) {
+/** [J] Most energy out of nothing in a step of an arm whose motors of a stiffness tear it out of rest, time and again. */
+double mostWhereMotorsThrowAnArm(double stiffness) {
   SimulationConfig config;
   config.robots = {fallingArm(R"(type="continuous">)", "")};
   for (const char* joint : {"shoulder", "elbow"}) {
-    config.robots[0].gains[joint].p = 300;
+    config.robots[0].gains[joint].p = stiffness;
     config.robots[0].gains[joint].d = 5;
   }
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
@@ -237,8 +238,19 @@ TEST(EnergyOutOfNothing, IsHardlyAnyWhereMotorsThrowAnArmAbout) {
     out_of_nothing = std::max(out_of_nothing, simulator.step().energy_out_of_nothing);
     fastest = std::max(fastest, std::abs(simulator.world().jointState(1).velocity));
   }
-  EXPECT_LT(out_of_nothing, 3e-6);
-  EXPECT_GT(fastest, 10);
+  EXPECT_GT(fastest, 10) << stiffness;
+  return out_of_nothing;
+}
+
+/**
+ * Motors without an effort limit; stiff joints keep their velocity on the free way, and pay in the next step. What is gained most is gained
+ * in the last fast and first slow steps of a throw, and differs by a factor of three with where they fall.
+ */
+TEST(EnergyOutOfNothing, IsHardlyAnyWhereMotorsThrowAnArmAbout) {
+  constexpr double STIFFNESSES[] = {280, 290, 295, 298, 299, 300, 301, 302, 305, 310, 320, 340};  // [N m/rad]
+  double sum = 0;
+  for (const double stiffness : STIFFNESSES) sum += mostWhereMotorsThrowAnArm(stiffness);
+  EXPECT_LT(sum / std::size(STIFFNESSES), 3e-6);
 }
 
 TEST(EnergyGainedBit, IsNotSetByWhatContactsDoOnPurpose) {
