@@ -14,7 +14,7 @@ FLOORS = {
     "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search", "cylinders"],
     "reduction": ["lanes", "patches", "choice"],
     "dynamics": ["lanes", "scene", "trees", "free_way", "problem", "iterate", "newton", "sweeps", "island", "ode"],
-    "sim": ["numbers", "threads", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "inputs", "controllers"],
+    "sim": ["numbers", "threads", "config", "wheels", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "inputs", "controllers"],
     "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "settings", "saving", "attachments", "controllers"],
     "sim/contacts": ["motion", "search", "constraints"],
     "sim/sensors": ["readings", "types"],

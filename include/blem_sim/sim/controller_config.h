@@ -1,4 +1,5 @@
-// Settings of a controller: the keys of ros_controllers' joint_trajectory_controller, gripper_action_controller and diff_drive_controller.
+// Settings of a controller: the keys of ros_controllers' joint_trajectory_controller, gripper_action_controller, diff_drive_controller and
+// ackermann_steering_controller.
 #pragma once
 
 #include <array>
@@ -19,7 +20,10 @@ struct JointConstraint {
   double goal = 0;        ///< at the end
 };
 
-enum class ControllerKind { TRAJECTORY, GRIPPER, DRIVE };
+enum class ControllerKind { TRAJECTORY, GRIPPER, DRIVE, STEERED_DRIVE };
+
+/** True for what takes twists and gives odometry. */
+inline bool isDrive(ControllerKind kind) { return kind == ControllerKind::DRIVE || kind == ControllerKind::STEERED_DRIVE; }
 
 /** Limits of a part of a drive's twist, of both signs; infinite: none. Units as that part's: [m] or [rad]. */
 struct SpeedLimits {
@@ -29,12 +33,27 @@ struct SpeedLimits {
   double min_jerk = -NONE, max_jerk = NONE;                  ///< [1/s^3]
 };
 
-/** Settings of a drive: a robot on wheels that turns by letting the left ones roll otherwise than the right ones. */
+/** Settings of a drive that turns by steering wheels, as cars and tricycles do. Angles are positive to the left. */
+struct SteeringConfig {
+  std::vector<std::string> rear;    ///< joints of the wheels that are not steered
+  std::vector<std::string> joints;  ///< that steer
+  std::vector<std::string> driven;  ///< joints of the wheels with a motor, rear or steered ones
+  double wheelbase = 0;             ///< [m] from the rear wheels' middle to the steering joints; 0: as the URDF has them
+  double wheelbase_multiplier = 1;  ///< factor of calibration
+  double steered_radius = 0;        ///< [m] of driven wheels that are steered; 0: that of the first one's cylinder or sphere
+  double max_angle = 0;             ///< [rad] to both sides, of a wheel in the middle; 0: as far as the joints' limits let it
+  double speed = 0;                 ///< [rad/s] of that wheel; 0: any
+  /** Commands are a steering angle [rad] in the place of angular.z, and the speed of the driven wheels' middle [m/s]. */
+  bool takes_angles = false;
+};
+
+/** Settings of a drive: a robot on wheels that turns by letting the left ones roll otherwise than the right ones, or by steering. */
 struct DriveConfig {
   enum class Odometry { ENCODER, WORLD };
-  std::vector<std::string> left, right;  ///< joints of the wheels
+  std::vector<std::string> left, right;  ///< joints of the wheels of a drive that does not steer
+  SteeringConfig steering;               ///< of one that does
   double wheel_separation = 0;           ///< [m] between the middles of left and right wheels; 0: as the URDF has them
-  double wheel_radius = 0;               ///< [m] at which they roll; 0: that of the first left wheel's cylinder or sphere
+  double wheel_radius = 0;               ///< [m] at which they roll; 0: that of the first left or rear wheel's cylinder or sphere
   double separation_multiplier = 1, radius_multiplier = 1;  ///< factors of calibration
   SpeedLimits linear, angular;                              ///< of the twists that are driven
   double wheel_acceleration = 0;                            ///< [m/s^2] of each wheel's rim; 0: any
@@ -54,8 +73,8 @@ struct DriveConfig {
 struct ControllerConfig {
   std::string name = "joint_trajectory_controller";
   ControllerKind kind = ControllerKind::TRAJECTORY;
-  /** Joints that it moves: of a trajectory controller all that have a motor if empty, of a gripper one, of a drive left and right wheels.
-   */
+  /** Joints that it moves: of a trajectory controller all that have a motor if empty, of a gripper one, of a drive its wheels and what
+   * steers them. */
   std::vector<std::string> joints;
   double action_monitor_rate = 20;  ///< [Hz] of the action's feedback; 0 = every step, RATE_OFF = never
   // Keys of trajectory controllers.
@@ -71,6 +90,9 @@ struct ControllerConfig {
   double stall_timeout = 1;                 ///< [s] after which a gripper that stands still has stalled
   DriveConfig drive;
 };
+
+/** Rear wheels, steering joints and other driven wheels of a drive that steers. */
+std::vector<std::string> jointsOf(const SteeringConfig& steering);
 
 /** Topics of a drive in its robot's namespace. */
 std::string commandTopic(const ControllerConfig& drive);

@@ -1,6 +1,8 @@
-// A robot on wheels that is driven by twists and tells of its way, with diff_drive_controller's semantics, without ROS.
+// A robot on wheels that is driven by twists and tells of its way, as diff_drive_controller and ackermann_steering_controller do, without
+// ROS.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,10 +11,12 @@
 
 namespace blem_sim::sim {
 
+class Undercarriage;
+
 /** Motion over the ground. */
 struct DriveTwist {
   double linear = 0;   ///< [m/s] ahead
-  double angular = 0;  ///< [rad/s] to the left
+  double angular = 0;  ///< [rad/s] to the left; as a command to a drive that takes angles, [rad] of its steering
 };
 
 /** Pose and velocity of the base. */
@@ -23,12 +27,13 @@ struct DriveOdometry {
 };
 
 /**
- * Turns twists into velocities of wheels, which their motors keep as exactly as their efforts allow. Twists change within their limits,
- * each wheel's rim at wheel_acceleration at most. Commands come between two steps.
+ * Turns twists into velocities of wheels, which their motors keep as exactly as their efforts allow, and into angles of the joints that
+ * steer, which their motors hold by their gains. Twists change within their limits, each wheel's rim at wheel_acceleration at most.
+ * Commands come between two steps.
  */
 class DriveController {
  public:
-  /** @throws InputError: no such joint, one that has no motor, one that is there twice */
+  /** @throws InputError: no such joint, one that has no motor, one that is there twice, measures that are missing */
   DriveController(Simulator* simulator, int robot, ControllerConfig config);
 
   const ControllerConfig& config() const { return config_; }
@@ -36,9 +41,9 @@ class DriveController {
   int base() const { return base_; }  ///< link of the robot's description
   bool running() const { return running_; }
 
-  /** Stops the wheels; commands are taken from now on, and the encoder's odometry begins here. */
+  /** Stops the wheels; commands are taken from now on, and the encoder's odometry begins here. What takes angles steers straight. */
   void start();
-  /** The wheels stop. */
+  /** The wheels stop; steering stays as it is. */
   void stop();
   /** @throws InputError: stopped, no finite number, wheels would turn faster than can be commanded; nothing is changed then */
   void command(const DriveTwist& twist);
@@ -60,17 +65,27 @@ class DriveController {
   void keep(const Memory& memory);
   /** The wheels stop, and the encoder's odometry begins here. */
   void restart();
-  /** Takes a wanted twist. @throws InputError: nothing is changed then */
+  /** The nearest twist within the limits. */
+  DriveTwist allowed(const DriveTwist& twist) const;
+  /** @throws InputError: wheels would have to turn too fast in the end */
+  void requireCommandable(const DriveTwist& twist, Memory memory) const;
+  /** Takes a wanted twist. */
   void want(const DriveTwist& twist, Memory* memory);
-  /** Speeds of a step later. */
+  /** Steering angle [rad] that is wanted. */
+  double wantedAngle(const Memory& memory) const;
+  /** Speeds and steering of a step later. */
   void changeSpeeds(Memory* memory) const;
+  /** Whether the next step's are others. */
+  bool isUnderWay(const Memory& memory) const;
+  /** Velocities of wheels [rad/s]. */
+  std::vector<double> velocities(const Memory& memory) const;
   /** Turns the wheels, from the next step on. */
-  void drive(const DriveTwist& twist);
+  void drive(const std::vector<double>& velocities);
+  void steer(double angle);
   /** Whether motors of wheels have a velocity to keep. */
   bool isCommanded() const;
   bool isTakenOver() const;
-  /** [m/s] of the rims of some wheels, their mean. @param first index into joints_ */
-  double rimSpeed(std::size_t first, std::size_t count) const;
+  std::vector<dynamics::JointState> jointStates() const;
   DriveTwist rolled() const;
   /** Adds the way of a step. */
   void roll(Memory* memory) const;
@@ -79,7 +94,9 @@ class DriveController {
   Simulator* simulator_;
   std::string robot_;  ///< its index may change when others come or go
   ControllerConfig config_;
-  std::vector<int> joints_;  ///< indices into RobotInfo::joint_names, left wheels first
+  std::vector<int> joints_;  ///< indices into RobotInfo::joint_names, in the configuration's order
+  std::vector<int> wheels_;  ///< of them those that the drive turns
+  std::shared_ptr<const Undercarriage> undercarriage_;
   int base_ = 0;
   bool running_ = false;
 };

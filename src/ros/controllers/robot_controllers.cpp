@@ -23,6 +23,7 @@ struct TypeRow {
   const char* hardware_interface;
   std::optional<sim::ControllerKind> kind;
 };
+constexpr char ACKERMANN[] = "ackermann_steering_controller/AckermannSteeringController";
 const std::vector<TypeRow> TYPE_TABLE = {
     {"position_controllers/JointTrajectoryController", "hardware_interface::PositionJointInterface", sim::ControllerKind::TRAJECTORY},
     {"velocity_controllers/JointTrajectoryController", "hardware_interface::VelocityJointInterface", sim::ControllerKind::TRAJECTORY},
@@ -32,6 +33,7 @@ const std::vector<TypeRow> TYPE_TABLE = {
     {"position_controllers/GripperActionController", "hardware_interface::PositionJointInterface", sim::ControllerKind::GRIPPER},
     {"effort_controllers/GripperActionController", "hardware_interface::EffortJointInterface", sim::ControllerKind::GRIPPER},
     {"diff_drive_controller/DiffDriveController", "hardware_interface::VelocityJointInterface", sim::ControllerKind::DRIVE},
+    {ACKERMANN, "hardware_interface::VelocityJointInterface", sim::ControllerKind::STEERED_DRIVE},
     {"joint_state_controller/JointStateController", "hardware_interface::JointStateInterface", {}},
 };
 
@@ -162,7 +164,7 @@ void RobotControllers::add(const sim::ControllerConfig& config, const std::strin
   const int robot = simulator_->robotIndex(robot_);
   if (config.kind == sim::ControllerKind::GRIPPER)
     controller.server = std::make_unique<GripperServer>(node_, sim::GripperController(simulator_, robot, config), loop_->refusals());
-  else if (config.kind == sim::ControllerKind::DRIVE)
+  else if (sim::isDrive(config.kind))
     controller.server = std::make_unique<DriveServer>(node_, sim::DriveController(simulator_, robot, config), loop_);
   else
     controller.server = std::make_unique<TrajectoryServer>(node_, sim::TrajectoryController(simulator_, robot, config), loop_);
@@ -183,6 +185,7 @@ void RobotControllers::load(const std::string& name) {
   sim::ControllerConfig config;
   config.name = name;
   config.kind = *row->kind;
+  config.drive.steering.takes_angles = type == ACKERMANN;  // as that one does
   config = withParameters(node_, config);
   if (config.joints.empty()) throw InputError(place + "/joints: is missing; list the controller's joints");
   add(config, type);

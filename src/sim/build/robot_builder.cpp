@@ -142,7 +142,7 @@ void RobotBuilder::yieldToDrives() {
   info_.drives = config_.drives;
   std::vector<ControllerConfig> drives = config_.drives;
   for (const ControllerConfig& controller : config_.controllers.value_or(std::vector<ControllerConfig>()))
-    if (controller.kind == ControllerKind::DRIVE) drives.push_back(controller);
+    if (isDrive(controller.kind)) drives.push_back(controller);
   for (const ControllerConfig& controller : drives) {
     if (controller.drive.publish_rate == RATE_OFF) continue;
     const std::string topic = resolvedTopic(info_.name_space, odometryTopic(controller));

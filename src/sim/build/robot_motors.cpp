@@ -8,6 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "build/by_joint.h"
+#include "wheels/wheel_measures.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -69,14 +70,27 @@ class MotorWriter {
     return config_.motors == MotorDefault::FREE;
   }
 
-  /** True for a wheel that a drive keeps at its velocity, whatever the gains. */
-  bool isDriven(const std::string& joint) const {
-    const auto has = [&](const ControllerConfig& controller) {
-      const std::vector<std::string>& joints = controller.joints;
-      return controller.kind == ControllerKind::DRIVE && std::find(joints.begin(), joints.end(), joint) != joints.end();
+  /** Parts of joints in drives. */
+  enum class Role { NONE, WHEEL, CARRIED_WHEEL, STEERING };
+
+  Role roleIn(const ControllerConfig& controller, const std::string& joint) const {
+    const auto isIn = [&](const std::vector<std::string>& joints) {
+      return std::find(joints.begin(), joints.end(), joint) != joints.end();
     };
-    const std::vector<ControllerConfig> controllers = config_.controllers.value_or(std::vector<ControllerConfig>());
-    return std::any_of(config_.drives.begin(), config_.drives.end(), has) || std::any_of(controllers.begin(), controllers.end(), has);
+    const SteeringConfig& steering = controller.drive.steering;
+    if (controller.kind == ControllerKind::DRIVE) return isIn(controller.joints) ? Role::WHEEL : Role::NONE;
+    if (controller.kind != ControllerKind::STEERED_DRIVE) return Role::NONE;
+    if (isIn(steering.joints)) return Role::STEERING;
+    if (isIn(steering.driven)) return Role::WHEEL;
+    return isIn(steering.rear) || steeringAbove(model_.jointIndex(joint), steering, model_) >= 0 ? Role::CARRIED_WHEEL : Role::NONE;
+  }
+
+  Role roleOf(const std::string& joint) const {
+    std::vector<ControllerConfig> controllers = config_.controllers.value_or(std::vector<ControllerConfig>());
+    controllers.insert(controllers.end(), config_.drives.begin(), config_.drives.end());
+    for (const ControllerConfig& controller : controllers)
+      if (const Role role = roleIn(controller, joint); role != Role::NONE) return role;
+    return Role::NONE;
   }
 
   double velocityLimit(const model::LumpedJoint& joint) {
@@ -86,17 +100,20 @@ class MotorWriter {
     return std::numeric_limits<double>::infinity();
   }
 
+  /** Wheels of drives need no gains: those with a motor keep velocities whatever they are, the others roll freely. */
   void addGains(const model::LumpedJoint& joint, const JointLoad& load, MotorSettings* settings) {
+    const Role role = roleOf(joint.name);
+    const bool is_wheel = role == Role::WHEEL || role == Role::CARRIED_WHEEL;
     if (const JointGains* given = givenGains(joint.name)) {
       settings->gains = *given;
-    } else if (isFree(joint.name)) {
-      if (!isDriven(joint.name)) free_.push_back(joint.name);
+    } else if (role == Role::CARRIED_WHEEL || (isFree(joint.name) && role != Role::STEERING)) {
+      if (!is_wheel) free_.push_back(joint.name);
     } else {
       if (settings->law == MotorLaw::PID) not_explicit_.push_back(joint.name);
       settings->law = MotorLaw::IMPLICIT_PD;
       settings->gains = computedGains(load, joint, settings->effort_limit);
       settings->velocity_gain = VELOCITY_TIME * settings->gains.p;
-      if (!isDriven(joint.name)) computed_.push_back(fmt::format("{} {:.3g} {:.3g}", joint.name, settings->gains.p, settings->gains.d));
+      if (!is_wheel) computed_.push_back(fmt::format("{} {:.3g} {:.3g}", joint.name, settings->gains.p, settings->gains.d));
     }
   }
 

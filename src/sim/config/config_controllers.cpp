@@ -63,7 +63,7 @@ void readGripperSettings(YamlReader& reader, ControllerConfig* config) {
 }
 
 void readSettings(YamlReader& reader, ControllerConfig* config) {
-  if (config->kind == ControllerKind::DRIVE) return readDrive(reader, config);
+  if (isDrive(config->kind)) return readDrive(reader, config);
   reader.readRate("action_monitor_rate", &config->action_monitor_rate);
   if (config->kind == ControllerKind::GRIPPER)
     readGripperSettings(reader, config);
@@ -74,7 +74,7 @@ void readSettings(YamlReader& reader, ControllerConfig* config) {
 }  // namespace
 
 const std::vector<std::string>& controllerKeys(ControllerKind kind) {
-  if (kind == ControllerKind::DRIVE) return driveKeys();
+  if (isDrive(kind)) return driveKeys(kind);
   return kind == ControllerKind::GRIPPER ? GRIPPER_KEYS : TRAJECTORY_KEYS;
 }
 
@@ -91,7 +91,8 @@ std::optional<std::vector<ControllerConfig>> readControllers(YamlReader& robot) 
   robot.forEachItem("controllers", [&](YamlReader& reader) {
     ControllerConfig config;
     config.name = readName(reader);
-    config.kind = static_cast<ControllerKind>(reader.choice("type", {"joint_trajectory", "gripper", "diff_drive"}).value_or(0));
+    config.kind =
+        static_cast<ControllerKind>(reader.choice("type", {"joint_trajectory", "gripper", "diff_drive", "steered_drive"}).value_or(0));
     readSettings(reader, &config);
     const auto same = [&](const ControllerConfig& other) { return other.name == config.name; };
     if (std::any_of(controllers.begin(), controllers.end(), same))

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
 
 #include "config/config_sections.h"
@@ -8,33 +9,38 @@ namespace blem_sim::sim {
 
 namespace {
 
-const std::vector<std::string> DRIVE_KEYS = {"left_wheel",
-                                             "right_wheel",
-                                             "wheel_separation",
-                                             "wheel_radius",
-                                             "wheel_separation_multiplier",
-                                             "wheel_radius_multiplier",
-                                             "linear",
-                                             "angular",
-                                             "wheel_acceleration",
-                                             "wheel_torque",
-                                             "cmd_vel_timeout",
-                                             "cmd_vel_topic",
-                                             "odom_topic",
-                                             "odom_frame_id",
-                                             "base_frame_id",
-                                             "publish_rate",
-                                             "enable_odom_tf",
-                                             "odometry_source",
-                                             "pose_covariance_diagonal",
-                                             "twist_covariance_diagonal"};
+const std::vector<std::string> DIFFERENTIAL_KEYS = {"left_wheel", "right_wheel", "wheel_separation", "wheel_separation_multiplier"};
+const std::vector<std::string> STEERED_KEYS = {
+    "rear_wheel",         "front_steer",        "driven_wheel",   "wheel_separation_h",      "wheel_separation_h_multiplier",
+    "front_wheel_radius", "max_steering_angle", "steering_speed", "cmd_angle_instead_rotvel"};
+const std::vector<std::string> COMMON_KEYS = {"wheel_radius",
+                                              "wheel_radius_multiplier",
+                                              "linear",
+                                              "angular",
+                                              "wheel_acceleration",
+                                              "wheel_torque",
+                                              "cmd_vel_timeout",
+                                              "cmd_vel_topic",
+                                              "odom_topic",
+                                              "odom_frame_id",
+                                              "base_frame_id",
+                                              "publish_rate",
+                                              "enable_odom_tf",
+                                              "odometry_source",
+                                              "pose_covariance_diagonal",
+                                              "twist_covariance_diagonal"};
 
-/** One name or a list of them. */
-void readWheels(YamlReader& reader, const std::string& key, std::vector<std::string>* wheels) {
+std::vector<std::string> withCommonKeys(std::vector<std::string> keys) {
+  keys.insert(keys.end(), COMMON_KEYS.begin(), COMMON_KEYS.end());
+  return keys;
+}
+
+/** One name or a list of them. @param missing what to say where there is none */
+void readWheels(YamlReader& reader, const std::string& key, const std::string& missing, std::vector<std::string>* wheels) {
   const YAML::Node given = reader.node(key);
-  const std::string wanted = "must be a wheel's joint, or a list of them: [front, rear]";
+  const std::string wanted = "must be a joint, or a list of them: [front, rear]";
   if (!given.IsDefined() && !wheels->empty()) return;
-  if (!given.IsDefined()) reader.refuse(key, "is missing; name the joints of the wheels on that side");
+  if (!given.IsDefined()) reader.refuse(key, "is missing; " + missing);
   wheels->clear();
   if (given.IsScalar()) return wheels->push_back(given.Scalar());
   if (!given.IsSequence() || given.size() == 0) reader.refuse(key, wanted);
@@ -88,17 +94,40 @@ void readTwistLimits(YamlReader& controller, const std::string& part, const std:
   twist.finish();
 }
 
+void readWheelSides(YamlReader& reader, DriveConfig* drive) {
+  const std::string missing = "name the joints of the wheels on that side";
+  readWheels(reader, "left_wheel", missing, &drive->left);
+  readWheels(reader, "right_wheel", missing, &drive->right);
+  reader.read("wheel_separation", &drive->wheel_separation, NumberRange::positive());
+  reader.read("wheel_separation_multiplier", &drive->separation_multiplier, NumberRange::positive());
+}
+
+void readSteering(YamlReader& reader, SteeringConfig* steering) {
+  readWheels(reader, "rear_wheel", "name the joints of the wheels that are not steered", &steering->rear);
+  readWheels(reader, "front_steer", "name the joints that steer", &steering->joints);
+  if (steering->driven.empty()) steering->driven = steering->rear;
+  readWheels(reader, "driven_wheel", "", &steering->driven);
+  reader.read("wheel_separation_h", &steering->wheelbase, NumberRange::positive());
+  reader.read("wheel_separation_h_multiplier", &steering->wheelbase_multiplier, NumberRange::positive());
+  reader.read("front_wheel_radius", &steering->steered_radius, NumberRange::positive());
+  reader.read("max_steering_angle", &steering->max_angle, NumberRange::positive());
+  reader.read("steering_speed", &steering->speed, NumberRange::notNegative());
+  reader.read("cmd_angle_instead_rotvel", &steering->takes_angles);
+}
+
 }  // namespace
 
 void readDrive(YamlReader& reader, ControllerConfig* config) {
   DriveConfig& drive = config->drive;
-  readWheels(reader, "left_wheel", &drive.left);
-  readWheels(reader, "right_wheel", &drive.right);
-  config->joints = drive.left;
-  config->joints.insert(config->joints.end(), drive.right.begin(), drive.right.end());
-  reader.read("wheel_separation", &drive.wheel_separation, NumberRange::positive());
+  if (config->kind == ControllerKind::STEERED_DRIVE) {
+    readSteering(reader, &drive.steering);
+    config->joints = jointsOf(drive.steering);
+  } else {
+    readWheelSides(reader, &drive);
+    config->joints = drive.left;
+    config->joints.insert(config->joints.end(), drive.right.begin(), drive.right.end());
+  }
   reader.read("wheel_radius", &drive.wheel_radius, NumberRange::positive());
-  reader.read("wheel_separation_multiplier", &drive.separation_multiplier, NumberRange::positive());
   reader.read("wheel_radius_multiplier", &drive.radius_multiplier, NumberRange::positive());
   readTwistLimits(reader, "linear", "x", &drive.linear);
   readTwistLimits(reader, "angular", "z", &drive.angular);
@@ -109,7 +138,19 @@ void readDrive(YamlReader& reader, ControllerConfig* config) {
   readDriveOdometry(reader, &drive);
 }
 
-const std::vector<std::string>& driveKeys() { return DRIVE_KEYS; }
+const std::vector<std::string>& driveKeys(ControllerKind kind) {
+  static const std::vector<std::string> differential = withCommonKeys(DIFFERENTIAL_KEYS), steered = withCommonKeys(STEERED_KEYS);
+  return kind == ControllerKind::STEERED_DRIVE ? steered : differential;
+}
+
+std::vector<std::string> jointsOf(const SteeringConfig& steering) {
+  std::vector<std::string> joints = steering.rear;
+  joints.insert(joints.end(), steering.joints.begin(), steering.joints.end());
+  std::copy_if(steering.driven.begin(), steering.driven.end(), std::back_inserter(joints), [&](const std::string& wheel) {
+    return std::find(steering.rear.begin(), steering.rear.end(), wheel) == steering.rear.end();
+  });
+  return joints;
+}
 
 std::string commandTopic(const ControllerConfig& drive) {
   return drive.drive.command_topic.empty() ? drive.name + "/cmd_vel" : drive.drive.command_topic;

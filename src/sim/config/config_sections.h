@@ -27,7 +27,7 @@ std::vector<SensorConfig> readSensors(YamlReader& robot);
 std::optional<std::vector<ControllerConfig>> readControllers(YamlReader& robot);
 /** Keys of a drive, its name and type apart. */
 void readDrive(YamlReader& reader, ControllerConfig* config);
-const std::vector<std::string>& driveKeys();
+const std::vector<std::string>& driveKeys(ControllerKind kind);
 
 /** parseConfig that also tells which keys it knows, as "robots[].gains.*.p"; of a list or map only if the node holds one. */
 SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory,

@@ -11,7 +11,8 @@
 #include "blem_sim/sim/link_motion.h"
 #include "controllers/controlled_joints.h"
 #include "controllers/limited_speed.h"
-#include "controllers/wheel_measures.h"
+#include "wheels/undercarriage.h"
+#include "wheels/wheel_measures.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -23,17 +24,15 @@ constexpr double SMALL_ANGLE = 1e-4;  // [rad] up to which two terms of the sine
 /** sin(x) / x */
 double sinc(double x) { return std::abs(x) < SMALL_ANGLE ? 1 - x * x / 6 : std::sin(x) / x; }
 
-std::vector<int> wheelsOf(const RobotInfo& robot, const ControllerConfig& config) {
-  const DriveConfig& drive = config.drive;
-  if (drive.left.empty() || drive.right.empty())
-    throw InputError(fmt::format("controller '{}': needs left_wheel and right_wheel", config.name));
-  for (const std::string& wheel : config.joints)
-    if (std::count(config.joints.begin(), config.joints.end(), wheel) > 1)
-      throw InputError(fmt::format("controller '{}': wheel '{}' is there twice; name it once, left or right", config.name, wheel));
+/** @throws InputError: a joint that is there twice, or cannot be driven */
+std::vector<int> jointsOf(const RobotInfo& robot, const ControllerConfig& config) {
+  for (const std::string& joint : config.joints)
+    if (std::count(config.joints.begin(), config.joints.end(), joint) > 1)
+      throw InputError(fmt::format("controller '{}': joint '{}' is there twice; name it once", config.name, joint));
   return controlledJoints(robot, config);
 }
 
-constexpr std::size_t MEMORY_SIZE = 12;
+constexpr std::size_t MEMORY_SIZE = 13;
 
 }  // namespace
 
@@ -45,13 +44,14 @@ struct DriveController::Memory {
   double x = 0, y = 0, heading = 0;
   DriveTwist wanted;
   LimitedSpeed linear, angular;  ///< of the step before
+  double steering = 0;           ///< [rad] of the step before
 
   static Memory from(const std::array<double, MEMORY_SIZE>& n) {
-    return {n[0], n[1], n[2], n[3], n[4], n[5], {n[6], n[7]}, {n[8], n[9]}, {n[10], n[11]}};
+    return {n[0], n[1], n[2], n[3], n[4], n[5], {n[6], n[7]}, {n[8], n[9]}, {n[10], n[11]}, n[12]};
   }
   std::array<double, MEMORY_SIZE> numbers() const {
-    return {steps,         command_time,        moves, x, y, heading, wanted.linear, wanted.angular, linear.speed, linear.acceleration,
-            angular.speed, angular.acceleration};
+    return {steps,         command_time,         moves,   x, y, heading, wanted.linear, wanted.angular, linear.speed, linear.acceleration,
+            angular.speed, angular.acceleration, steering};
   }
 };
 
@@ -59,9 +59,12 @@ DriveController::DriveController(Simulator* simulator, int robot, ControllerConf
     : simulator_(simulator),
       robot_(simulator->robots().at(robot).name),
       config_(std::move(config)),
-      joints_(wheelsOf(simulator->robots().at(robot), config_)) {
+      joints_(jointsOf(simulator->robots().at(robot), config_)) {
   const model::RobotModel& model = *simulator->robots()[robot].description;
   config_.drive = measured(config_, model);
+  undercarriage_ = undercarriageOf(config_, model);
+  for (const std::string& wheel : undercarriage_->wheels())
+    wheels_.push_back(joints_[std::find(config_.joints.begin(), config_.joints.end(), wheel) - config_.joints.begin()]);
   const int link = model.linkIndex(config_.drive.base_frame);
   base_ = link < 0 ? model.root : link;
 }
@@ -74,7 +77,7 @@ void DriveController::start() {
 }
 
 void DriveController::stop() {
-  if (running_) drive({});
+  if (running_) drive(std::vector<double>(wheels_.size()));
   running_ = false;
   simulator_->remember(robot_, config_.name, {});
 }
@@ -100,12 +103,15 @@ DriveController::Memory DriveController::atRest() const {
   Memory memory;
   memory.steps = static_cast<double>(simulator_->steps());
   memory.command_time = simulator_->time();
+  memory.steering = undercarriage_->angleOf(jointStates());
+  if (config_.drive.steering.takes_angles) memory.wanted.angular = memory.angular.speed = memory.steering;
   return memory;
 }
 
 void DriveController::restart() {
-  keep(atRest());
-  drive({});
+  Memory memory = atRest();
+  want({}, &memory);
+  keep(memory);
 }
 
 void DriveController::command(const DriveTwist& twist) {
@@ -114,35 +120,76 @@ void DriveController::command(const DriveTwist& twist) {
     if (!isCommand(number))
       throw InputError(fmt::format("twist: {}: is {}; give a finite number within {:g}", field, number, LARGEST_COMMAND));
   Memory memory = recall();
+  requireCommandable(twist, memory);
   want(twist, &memory);
   memory.command_time = simulator_->time();
   memory.moves = twist.linear != 0 || twist.angular != 0;
   keep(memory);
 }
 
+DriveTwist DriveController::allowed(const DriveTwist& twist) const {
+  return {allowedSpeed(twist.linear, config_.drive.linear), allowedSpeed(twist.angular, config_.drive.angular)};
+}
+
+void DriveController::requireCommandable(const DriveTwist& twist, Memory memory) const {
+  memory.wanted = allowed(twist);
+  memory.linear.speed = memory.wanted.linear;
+  memory.angular.speed = memory.wanted.angular;
+  memory.steering = wantedAngle(memory);
+  const std::vector<double> turns = velocities(memory);
+  for (std::size_t wheel = 0; wheel < turns.size(); ++wheel)
+    if (!isCommand(turns[wheel]))
+      throw InputError(fmt::format("twist: wheel '{}' would get a velocity of {:g} rad/s; give a twist that keeps it within {:g}",
+                                   undercarriage_->wheels()[wheel], turns[wheel], LARGEST_COMMAND));
+}
+
 void DriveController::want(const DriveTwist& twist, Memory* memory) {
-  memory->wanted = {allowedSpeed(twist.linear, config_.drive.linear), allowedSpeed(twist.angular, config_.drive.angular)};
+  memory->wanted = allowed(twist);
   Memory next = *memory;
   changeSpeeds(&next);
-  drive({next.linear.speed, next.angular.speed});
+  drive(velocities(next));
+  steer(next.steering);
+}
+
+double DriveController::wantedAngle(const Memory& memory) const {
+  DriveTwist wanted = memory.wanted;
+  const bool ends = wanted.linear == 0 && wanted.angular == 0;
+  // A turn that fades within its limits, at the end of a twist, is none in place.
+  if (!ends || config_.drive.steering.takes_angles) wanted.angular = memory.angular.speed;
+  return undercarriage_->angleFor(wanted, memory.steering);
 }
 
 void DriveController::changeSpeeds(Memory* memory) const {
   const double dt = simulator_->config().time_step;
   memory->linear = speedAfterStep(memory->linear, memory->wanted.linear, config_.drive.linear, dt);
   memory->angular = speedAfterStep(memory->angular, memory->wanted.angular, config_.drive.angular, dt);
+  const double angle = wantedAngle(*memory), most = config_.drive.steering.speed * dt;
+  memory->steering = most > 0 ? std::clamp(angle, memory->steering - most, memory->steering + most) : angle;
 }
 
-void DriveController::drive(const DriveTwist& twist) {
+bool DriveController::isUnderWay(const Memory& memory) const {
+  return memory.linear.speed != memory.wanted.linear || memory.angular.speed != memory.wanted.angular ||
+         memory.steering != wantedAngle(memory);
+}
+
+std::vector<double> DriveController::velocities(const Memory& memory) const {
+  return undercarriage_->velocities({memory.linear.speed, memory.angular.speed}, {wantedAngle(memory), memory.steering});
+}
+
+void DriveController::drive(const std::vector<double>& velocities) {
   const DriveConfig& settings = config_.drive;
-  const double aside = twist.angular * settings.wheel_separation / 2;
   JointVelocityCommand command;
-  command.joints = config_.joints;
-  command.velocities.assign(settings.left.size(), (twist.linear - aside) / settings.wheel_radius);
-  command.velocities.resize(command.joints.size(), (twist.linear + aside) / settings.wheel_radius);
+  command.joints = undercarriage_->wheels();
+  // While steering is under way, wheels may be to turn faster than at its end.
+  for (const double velocity : velocities) command.velocities.push_back(std::clamp(velocity, -LARGEST_COMMAND, LARGEST_COMMAND));
   command.acceleration = settings.wheel_acceleration / settings.wheel_radius;
   command.max_effort = settings.wheel_torque;
   simulator_->driveJoints(robot(), command);
+}
+
+void DriveController::steer(double angle) {
+  if (undercarriage_->steering().empty()) return;
+  simulator_->commandJoints(robot(), {undercarriage_->steering(), undercarriage_->positions(angle), {}, {}});
 }
 
 void DriveController::update() {
@@ -158,33 +205,30 @@ void DriveController::update() {
   const double timeout = config_.drive.cmd_vel_timeout;
   const bool ends = timeout > 0 && memory.moves != 0 && simulator_->time() > memory.command_time + timeout - SAME_AGE;
   if (ends) memory.moves = 0;
-  const DriveTwist wanted = ends ? DriveTwist{} : memory.wanted;
-  if (ends || memory.linear.speed != wanted.linear || memory.angular.speed != wanted.angular) want(wanted, &memory);
+  if (ends)
+    want({}, &memory);
+  else if (isUnderWay(memory))
+    want(memory.wanted, &memory);
   keep(memory);
 }
 
 bool DriveController::isCommanded() const {
   const double then = simulator_->time() + ANY_RAMP;
-  return std::any_of(joints_.begin(), joints_.end(),
+  return std::any_of(wheels_.begin(), wheels_.end(),
                      [&](int joint) { return simulator_->desiredState(robot(), joint, then).velocity != 0; });
 }
 
 bool DriveController::isTakenOver() const {
-  return std::any_of(joints_.begin(), joints_.end(), [&](int joint) { return simulator_->followedPath(robot(), joint) != nullptr; });
+  return std::any_of(wheels_.begin(), wheels_.end(), [&](int joint) { return simulator_->followedPath(robot(), joint) != nullptr; });
 }
 
-double DriveController::rimSpeed(std::size_t first, std::size_t count) const {
-  double sum = 0;
-  for (std::size_t wheel = first; wheel < first + count; ++wheel)
-    sum += simulator_->world().jointState(robotInfo().joints[joints_[wheel]]).velocity;
-  return config_.drive.wheel_radius * sum / static_cast<double>(count);
+std::vector<dynamics::JointState> DriveController::jointStates() const {
+  std::vector<dynamics::JointState> states;
+  for (const int joint : joints_) states.push_back(simulator_->world().jointState(robotInfo().joints[joint]));
+  return states;
 }
 
-DriveTwist DriveController::rolled() const {
-  const DriveConfig& settings = config_.drive;
-  const double left = rimSpeed(0, settings.left.size()), right = rimSpeed(settings.left.size(), settings.right.size());
-  return {(left + right) / 2, (right - left) / settings.wheel_separation};
-}
+DriveTwist DriveController::rolled() const { return undercarriage_->rolled(jointStates()); }
 
 /** On an arc, whose chord leads half its turn aside. */
 void DriveController::roll(Memory* memory) const {
@@ -201,8 +245,10 @@ DriveOdometry DriveController::odometry() const {
   const DriveTwist twist = rolled();
   const Memory memory = recall();
   DriveOdometry odometry;
-  odometry.X_OB = makePose({memory.x, memory.y, 0}, {0, 0, memory.heading});
-  odometry.v_OB.x() = twist.linear;
+  const Vector3 middle(undercarriage_->middle().x(), undercarriage_->middle().y(), 0);
+  const Pose X_SM = makePose({memory.x, memory.y, 0}, {0, 0, memory.heading});  // the middle, from where it started
+  odometry.X_OB = makePose(middle) * X_SM * makePose(-middle);
+  odometry.v_OB = {twist.linear + twist.angular * middle.y(), -twist.angular * middle.x(), 0};
   odometry.w_OB.z() = twist.angular;
   return odometry;
 }

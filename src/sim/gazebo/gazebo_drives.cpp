@@ -3,25 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
+#include "blem_sim/geometry/input_error.h"
 #include "gazebo/gazebo_names.h"
 #include "gazebo/gazebo_plugin_types.h"
 #include "gazebo/gazebo_reader.h"
+#include "wheels/undercarriage.h"
+#include "wheels/wheel_measures.h"
 
 namespace blem_sim::sim {
 namespace {
 
 constexpr std::size_t MOST_DRIVES = 100;  // of a robot
 
-/** A drive as a plugin takes it for granted. */
-ControllerConfig gazebosDefaults(const std::string& name, bool is_skid) {
+/** A drive as all plugins for them take it for granted. */
+ControllerConfig gazebosDefaults(const std::string& name) {
   ControllerConfig config;
   config.name = name;
   config.kind = ControllerKind::DRIVE;
   DriveConfig& drive = config.drive;
-  drive.wheel_separation = is_skid ? 0.4 : 0.34;
   drive.wheel_radius = 0.075;
   drive.wheel_torque = 5;
   drive.cmd_vel_timeout = 0;
@@ -47,11 +50,13 @@ void readFrame(GazeboReader* reader, const char* path, std::string* frame) {
   frame->erase(0, std::min(frame->find_first_not_of('/'), frame->size()));
 }
 
+void readDiameter(GazeboReader* reader, const char* path, double* radius) {
+  double diameter = 2 * *radius;
+  reader->read(path, &diameter, NumberRange::positive());
+  *radius = diameter / 2;
+}
+
 void readWay(GazeboReader* reader, DriveConfig* drive) {
-  double diameter = 2 * drive->wheel_radius;
-  reader->read("wheelSeparation", &drive->wheel_separation, NumberRange::positive());
-  reader->read("wheelDiameter", &diameter, NumberRange::positive());
-  drive->wheel_radius = diameter / 2;
   reader->read("commandTopic", &drive->command_topic);
   reader->read("odometryTopic", &drive->odom_topic);
   readFrame(reader, "odometryFrame", &drive->odom_frame);
@@ -60,17 +65,34 @@ void readWay(GazeboReader* reader, DriveConfig* drive) {
   reader->skip({"alwaysOn", "rosDebugLevel"});
 }
 
-void readDiffDrive(GazeboReader* reader, DriveConfig* drive) {
-  drive->left = {wheel(reader, "leftJoint", "left_joint")};
-  drive->right = {wheel(reader, "rightJoint", "right_joint")};
-  reader->read("wheelAcceleration", &drive->wheel_acceleration, NumberRange::notNegative());
-  reader->read("wheelTorque", &drive->wheel_torque, NumberRange::positive());
-  readFlag(reader, "publishOdomTF", &drive->enable_odom_tf);
+void readOdometrySource(GazeboReader* reader, DriveConfig* drive) {
   const std::string source = reader->text("odometrySource").value_or("world");
   if (source == "encoder")
     drive->source = DriveConfig::Odometry::ENCODER;
   else if (source != "world")
     reader->fault("odometrySource", fmt::format("'{}' is neither encoder nor world; it is world: write one of them", source));
+}
+
+void readSides(GazeboReader* reader, double separation, DriveConfig* drive) {
+  drive->wheel_separation = separation;
+  reader->read("wheelSeparation", &drive->wheel_separation, NumberRange::positive());
+  readDiameter(reader, "wheelDiameter", &drive->wheel_radius);
+}
+
+void nameSides(ControllerConfig* config) {
+  config->joints = config->drive.left;
+  config->joints.insert(config->joints.end(), config->drive.right.begin(), config->drive.right.end());
+}
+
+void readDiffDrive(GazeboReader* reader, ControllerConfig* config) {
+  DriveConfig* drive = &config->drive;
+  readSides(reader, 0.34, drive);
+  drive->left = {wheel(reader, "leftJoint", "left_joint")};
+  drive->right = {wheel(reader, "rightJoint", "right_joint")};
+  reader->read("wheelAcceleration", &drive->wheel_acceleration, NumberRange::notNegative());
+  reader->read("wheelTorque", &drive->wheel_torque, NumberRange::positive());
+  readFlag(reader, "publishOdomTF", &drive->enable_odom_tf);
+  readOdometrySource(reader, drive);
   bool publishes = true, is_legacy = true;
   readFlag(reader, "publishTf", &publishes);
   if (!publishes) drive->publish_rate = RATE_OFF;
@@ -80,9 +102,12 @@ void readDiffDrive(GazeboReader* reader, DriveConfig* drive) {
     reader->fault("legacyMode", "is not false, so leftJoint is the right wheel's, as in Gazebo: write false if left is left");
   }
   reader->skipWithoutEffect({"publishWheelTF", "publishWheelJointState"});
+  nameSides(config);
 }
 
-void readSkidSteer(GazeboReader* reader, DriveConfig* drive) {
+void readSkidSteer(GazeboReader* reader, ControllerConfig* config) {
+  DriveConfig* drive = &config->drive;
+  readSides(reader, 0.4, drive);
   drive->left = {wheel(reader, "leftFrontJoint", "left_front_joint"), wheel(reader, "leftRearJoint", "left_rear_joint")};
   drive->right = {wheel(reader, "rightFrontJoint", "right_front_joint"), wheel(reader, "rightRearJoint", "right_rear_joint")};
   reader->read("torque", &drive->wheel_torque, NumberRange::positive());
@@ -93,7 +118,48 @@ void readSkidSteer(GazeboReader* reader, DriveConfig* drive) {
   reader->read("covariance_y", &drive->pose_covariance[1], NumberRange::notNegative());
   reader->read("covariance_yaw", &drive->pose_covariance[5], NumberRange::notNegative());
   drive->twist_covariance = drive->pose_covariance;
+  nameSides(config);
 }
+
+/** Its wheelAcceleration is one of angles, in front. */
+void readTricycleAcceleration(GazeboReader* reader, DriveConfig* drive) {
+  double speeding = 0;
+  std::optional<double> slowing;
+  reader->read("wheelAcceleration", &speeding, NumberRange::notNegative());
+  reader->read("wheelDeceleration", &slowing, NumberRange::notNegative());
+  drive->wheel_acceleration = speeding * drive->steering.steered_radius;
+  if (slowing && *slowing != speeding)
+    reader->fault("wheelDeceleration", "is not wheelAcceleration, which holds for both; write the same number");
+}
+
+void readTricycle(GazeboReader* reader, ControllerConfig* config) {
+  config->kind = ControllerKind::STEERED_DRIVE;
+  DriveConfig* drive = &config->drive;
+  SteeringConfig& steering = drive->steering;
+  steering.rear = {wheel(reader, "encoderWheelLeftJoint", "left_wheel_joint"),
+                   wheel(reader, "encoderWheelRightJoint", "right_wheel_joint")};
+  steering.joints = {wheel(reader, "steeringJoint", "front_steering_joint")};
+  steering.driven = {wheel(reader, "actuatedWheelJoint", "front_wheel_joint")};
+  steering.takes_angles = true;
+  steering.steered_radius = drive->wheel_radius;
+  readDiameter(reader, "actuatedWheelDiameter", &steering.steered_radius);
+  readDiameter(reader, "encoderWheelDiameter", &drive->wheel_radius);
+  reader->read("steeringSpeed", &steering.speed, NumberRange::notNegative());
+  reader->read("wheelTorque", &drive->wheel_torque, NumberRange::positive());
+  readTricycleAcceleration(reader, drive);
+  readOdometrySource(reader, drive);
+  if (!reader->text("robotBaseFrame")) drive->base_frame = "base_link";
+  reader->skipWithoutEffect(
+      {"encoderWheelSeparation", "wheelSpeedTolerance", "steeringAngleTolerance", "publishWheelTF", "publishWheelJointState"});
+  config->joints = jointsOf(steering);
+}
+
+struct DriveType {
+  const char* plugin;
+  void (*read)(GazeboReader* reader, ControllerConfig* config);
+};
+constexpr DriveType DRIVE_TYPES[] = {
+    {"gazebo_ros_diff_drive", readDiffDrive}, {"gazebo_ros_skid_steer_drive", readSkidSteer}, {"gazebo_ros_tricycle_drive", readTricycle}};
 
 /** Why a wheel cannot be driven, in words; empty if it can. */
 std::string faultOfWheel(const std::string& name, const std::vector<std::string>& wheels, const model::RobotModel& model) {
@@ -122,6 +188,14 @@ bool isUsable(const ControllerConfig& config, const model::RobotModel& model, Ga
     reader->notes().fault(reader->where(), fmt::format("'{}' is no ROS topic; the drive is left out: use letters, digits, _ and /", topic));
     return false;
   }
+  try {
+    ControllerConfig measures = config;
+    measures.drive = measured(config, model);
+    undercarriageOf(measures, model);
+  } catch (const InputError& error) {
+    reader->notes().fault(reader->where(), fmt::format("{}; the drive is left out", error.what()));
+    return false;
+  }
   return true;
 }
 
@@ -129,17 +203,15 @@ bool isUsable(const ControllerConfig& config, const model::RobotModel& model, Ga
 
 bool readGazeboDrive(const model::GazeboBlock& plugin, const model::RobotModel& model, GazeboNotes* notes, RobotConfig* robot) {
   const std::string kind = pluginName(plugin.type);
-  const bool is_skid = kind == "gazebo_ros_skid_steer_drive";
-  if (!is_skid && kind != "gazebo_ros_diff_drive") return false;
+  const auto type = std::find_if(std::begin(DRIVE_TYPES), std::end(DRIVE_TYPES), [&](const DriveType& row) { return kind == row.plugin; });
+  if (type == std::end(DRIVE_TYPES)) return false;
   GazeboReader reader(plugin, notes);
-  ControllerConfig config = gazebosDefaults(rosWord(plugin.name.empty() ? "drive" : plugin.name, "drive_"), is_skid);
+  ControllerConfig config = gazebosDefaults(rosWord(plugin.name.empty() ? "drive" : plugin.name, "drive_"));
   DriveConfig& drive = config.drive;
   readWay(&reader, &drive);
-  (is_skid ? readSkidSteer : readDiffDrive)(&reader, &drive);
+  type->read(&reader, &config);
   const std::string name_space = reader.text("robotNamespace").value_or("");
   reader.finish();
-  config.joints = drive.left;
-  config.joints.insert(config.joints.end(), drive.right.begin(), drive.right.end());
   for (std::string* topic : {&drive.command_topic, &drive.odom_topic}) *topic = topicInBlock(*topic, name_space, robot->name_space);
   if (drive.odom_frame.empty()) drive.odom_frame = "odom";
   if (robot->controllers && hasName(*robot->controllers, config.name)) return true;

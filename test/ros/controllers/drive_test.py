@@ -19,7 +19,8 @@ from blem_sim.srv import DeleteModel, ListControllers, LoadController, SpawnMode
 from sim_client import PATIENCE, Recorder, wait_until
 
 NAME = "differential_drive_controller"
-ROVER = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros", "rover.urdf")
+ROBOTS = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
+ROVER, TRICYCLE = os.path.join(ROBOTS, "rover.urdf"), os.path.join(ROBOTS, "tricycle.urdf")
 SPEED, TURN = 0.5, 0.5  # [m/s], [rad/s]
 
 
@@ -118,6 +119,28 @@ class DriveTest(unittest.TestCase):
         self.assertAlmostEqual(self.run_to(odometry, 1000).pose.pose.position.x, SPEED * (1 - SPEED / 2), delta=0.01)
         self.assertTrue(sim_client.service("delete_model", DeleteModel)("third").success)
         wait_until(lambda: "/third/odom" not in dict(rospy.get_published_topics()), "the end of its topics")
+        sim_client.step(1)
+
+    def test_a_spawned_tricycle_steers(self):
+        angle, wheelbase = 0.5, 0.5
+        with open(TRICYCLE) as stream:
+            spawned = sim_client.service("spawn_urdf_model", SpawnModel)("trike", stream.read(), "trike", Pose(position=Point(0, -5, 0.1)), "")
+        self.assertTrue(spawned.success, spawned.status_message)
+        self.assertIn("tricycle_drive_controller (on /trike/cmd_vel)", spawned.status_message)
+        drive = listed("/trike")["tricycle_drive_controller"]
+        self.assertEqual((drive.type, drive.state), ("ackermann_steering_controller/AckermannSteeringController", "running"))
+        self.assertEqual(list(drive.claimed_resources[0].resources), ["left_axle", "right_axle", "front_steer", "front_axle"])
+        manager = "/trike/controller_manager/"
+        self.assertTrue(rospy.ServiceProxy(manager + "load_controller", LoadController)("ackermann").ok)
+        for stopping, name_space, side in ((None, "", 1), ("tricycle_drive_controller", "/ackermann", -1)):
+            if stopping:
+                self.assertTrue(rospy.ServiceProxy(manager + "switch_controller", SwitchController)(["ackermann"], [stopping], 2, False, 0).ok)
+            odometry = self.listen("/trike" + name_space + "/odom", Odometry)
+            self.drive("/trike" + name_space + "/cmd_vel", SPEED, side * angle)
+            twist = self.run_to(odometry, 2000).twist.twist
+            self.assertAlmostEqual(twist.linear.x, SPEED * math.cos(angle), delta=0.01 * SPEED)
+            self.assertAlmostEqual(twist.angular.z, side * SPEED * math.sin(angle) / wheelbase, delta=0.01)
+        self.assertTrue(sim_client.service("delete_model", DeleteModel)("trike").success)
         sim_client.step(1)
 
     def test_odometry_and_frames_are_told_during_a_pause(self):

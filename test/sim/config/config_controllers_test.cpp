@@ -129,6 +129,45 @@ TEST(ConfigControllers, RefusesFaultyDrives) {
   EXPECT_EQ(told(whole), "");
 }
 
+TEST(ConfigControllers, ReadsDrivesThatSteer) {
+  const auto read = [](const std::string& more) {
+    return controllersOf(", controllers: [{name: d, type: steered_drive, rear_wheel: [a, b], front_steer: s" + more + "}]").value().front();
+  };
+  ControllerConfig config = read(
+      ", driven_wheel: f, wheel_separation_h: 0.7, wheel_separation_h_multiplier: 1.1, front_wheel_radius: 0.2, wheel_radius: 0.1, "
+      "max_steering_angle: 0.6, steering_speed: 2, cmd_angle_instead_rotvel: true, cmd_vel_timeout: 3");
+  EXPECT_EQ(config.kind, ControllerKind::STEERED_DRIVE);
+  EXPECT_EQ(config.joints, (std::vector<std::string>{"a", "b", "s", "f"}));
+  const SteeringConfig& steering = config.drive.steering;
+  EXPECT_EQ(steering.rear, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(steering.joints, std::vector<std::string>{"s"});
+  EXPECT_EQ(steering.driven, std::vector<std::string>{"f"});
+  EXPECT_EQ(steering.wheelbase, 0.7);
+  EXPECT_EQ(steering.wheelbase_multiplier, 1.1);
+  EXPECT_EQ(steering.steered_radius, 0.2);
+  EXPECT_EQ(config.drive.wheel_radius, 0.1);
+  EXPECT_EQ(steering.max_angle, 0.6);
+  EXPECT_EQ(steering.speed, 2);
+  EXPECT_TRUE(steering.takes_angles);
+  EXPECT_EQ(config.drive.cmd_vel_timeout, 3);
+  config = read("");
+  EXPECT_EQ(config.drive.steering.driven, (std::vector<std::string>{"a", "b"})) << "left out";
+  EXPECT_EQ(config.joints, (std::vector<std::string>{"a", "b", "s"}));
+}
+
+TEST(ConfigControllers, RefusesFaultyDrivesThatSteer) {
+  const auto told = [](const std::string& drive) { return refusalOfList("{name: d, type: steered_drive, " + drive + "}"); };
+  EXPECT_TRUE(isOneLineWith(told("front_steer: s"), {"rear_wheel", "missing", "not steered"}));
+  EXPECT_TRUE(isOneLineWith(told("rear_wheel: a"), {"front_steer", "missing", "steer"}));
+  const std::string whole = "rear_wheel: a, front_steer: s";
+  EXPECT_EQ(told(whole), "");
+  EXPECT_TRUE(isOneLineWith(told(whole + ", wheel_separation_h: 0"), {"wheel_separation_h", "above 0"}));
+  EXPECT_TRUE(isOneLineWith(told(whole + ", steering_speed: -1"), {"steering_speed", "at least 0"}));
+  EXPECT_TRUE(isOneLineWith(told(whole + ", max_steering_angle: .nan"), {"max_steering_angle", "above 0"}));
+  EXPECT_TRUE(isOneLineWith(told(whole + ", driven_wheel: []"), {"driven_wheel", "list"}));
+  EXPECT_TRUE(isOneLineWith(told(whole + ", left_wheel: b"), {"left_wheel", "unknown"}));
+}
+
 TEST(ConfigControllers, KeysOfTheParameterServerGoOverThoseGiven) {
   ControllerConfig given;
   given.goal_time = 3;

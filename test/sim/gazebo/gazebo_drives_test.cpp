@@ -3,6 +3,7 @@
 
 #include "blem_sim/sim/drive_controller.h"
 #include "sim/controllers/rover.h"
+#include "sim/controllers/steered_robots.h"
 #include "sim/gazebo/described_robot.h"
 
 namespace blem_sim::sim {
@@ -114,6 +115,51 @@ TEST(GazeboDrives, WhatCannotBeDrivenIsToldAndLeftOut) {
   EXPECT_EQ(zero.config.drives.back().drive.wheel_separation, 0.34);
   EXPECT_EQ(toldTimes(zero.notes, "<wheelSeparation>: is 0; it is left out"), 1);
   EXPECT_EQ(toldTimes(zero.notes, "<odometrySource>: 'stars'"), 1);
+}
+
+const char* const TRICYCLE =
+    "<steeringJoint>front_steer</steeringJoint><actuatedWheelJoint>front_axle</actuatedWheelJoint><encoderWheelLeftJoint>left_axle"
+    "</encoderWheelLeftJoint><encoderWheelRightJoint>right_axle</encoderWheelRightJoint>";
+
+GazeboRobot tricycleWith(const std::string& blocks) {
+  return withGazeboBlocks({}, model::loadUrdf(tricycleUrdf(blocks), "test.urdf", model::UriResolver()));
+}
+
+TEST(GazeboDrives, ATricycleDriveIsRead) {
+  const GazeboRobot robot = tricycleWith(drivePlugin(
+      "tricycle_drive", TRICYCLE + std::string("<actuatedWheelDiameter>0.2</actuatedWheelDiameter><encoderWheelDiameter>0.3"
+                                               "</encoderWheelDiameter><wheelAcceleration>4</wheelAcceleration><wheelDeceleration>4"
+                                               "</wheelDeceleration><wheelTorque>7</wheelTorque><steeringSpeed>0.4</steeringSpeed>"
+                                               "<odometrySource>encoder</odometrySource><updateRate>20</updateRate>"
+                                               "<commandTopic>cmd</commandTopic><steeringAngleTolerance>0.02</steeringAngleTolerance>"
+                                               "<encoderWheelSeparation>0.4</encoderWheelSeparation>")));
+  ASSERT_EQ(robot.config.drives.size(), 1u);
+  const ControllerConfig& config = robot.config.drives.front();
+  EXPECT_EQ(config.kind, ControllerKind::STEERED_DRIVE);
+  EXPECT_EQ(config.joints, (std::vector<std::string>{"left_axle", "right_axle", "front_steer", "front_axle"}));
+  EXPECT_EQ(config.drive.steering.steered_radius, 0.1);
+  EXPECT_EQ(config.drive.wheel_radius, 0.15);
+  EXPECT_EQ(config.drive.wheel_acceleration, 0.4) << "4 rad/s^2";
+  EXPECT_EQ(config.drive.wheel_torque, 7);
+  EXPECT_EQ(config.drive.steering.speed, 0.4);
+  EXPECT_TRUE(config.drive.steering.takes_angles);
+  EXPECT_EQ(config.drive.source, DriveConfig::Odometry::ENCODER);
+  EXPECT_EQ(config.drive.base_frame, "base_link");
+  EXPECT_EQ(commandTopic(config), "cmd");
+  EXPECT_EQ(toldTimes(robot.notes, "without effect here: encoderWheelSeparation, steeringAngleTolerance"), 1);
+  EXPECT_EQ(robot.notes.size(), 2u);
+}
+
+TEST(GazeboDrives, ATricycleThatCannotSteerIsToldAndLeftOut) {
+  const GazeboRobot robot =
+      tricycleWith(drivePlugin("tricycle_drive",
+                               "<steeringJoint>front_steer</steeringJoint><actuatedWheelJoint>right_axle</actuatedWheelJoint>"
+                               "<encoderWheelLeftJoint>left_axle</encoderWheelLeftJoint><encoderWheelRightJoint>front_axle"
+                               "</encoderWheelRightJoint><wheelDeceleration>2</wheelDeceleration>"));
+  EXPECT_TRUE(robot.config.drives.empty());
+  EXPECT_EQ(toldTimes(robot.notes, "rear_wheel: 'front_axle' hangs on a joint of front_steer"), 1);
+  EXPECT_EQ(toldTimes(robot.notes, "the drive is left out"), 1);
+  EXPECT_EQ(toldTimes(robot.notes, "<wheelDeceleration>"), 1);
 }
 
 TEST(GazeboDrives, AControllerOfItsNameBeatsIt) {
