@@ -170,8 +170,8 @@ struct LoadTime {
 /** Wrench from outside on a body. */
 struct BodyLoad {
   int body = 0;
-  Wrench wrench;  ///< [N, N m] world axes
-  Vector3 p_B;    ///< [m] in the body's frame, where the force acts
+  Wrench wrench;                  ///< [N, N m] world axes
+  Vector3 p_B = Vector3::Zero();  ///< [m] in the body's frame, where the force acts
 };
 
 /** Log of long loads: their progress, and the size of the loaded model: names, stages, seconds, triangles, memory. */

@@ -29,11 +29,11 @@ struct StepProfile {
  * several parts are one: the point is the mean weighted with the impulses, the normal that of the largest impulse.
  */
 struct ContactReport {
-  int collider_a, collider_b;
-  int body_a, body_b;
-  Vector3 point, normal_BA;         ///< world
-  double depth = 0;                 ///< [m] largest in the step
-  double of_layer = 0;              ///< depth / (rA + rB); above 1 a bare mesh is pierced; 0 without a layer
+  int collider_a = -1, collider_b = -1;
+  int body_a = dynamics::WORLD_BODY, body_b = dynamics::WORLD_BODY;
+  Vector3 point = Vector3::Zero(), normal_BA = Vector3::Zero();  ///< world
+  double depth = 0;                                              ///< [m] largest in the step
+  double of_layer = 0;                                           ///< depth / (rA + rB); above 1 a bare mesh is pierced; 0 without a layer
   Vector3 force = Vector3::Zero();  ///< [N] on A, world; mean over the step: times StepReport::dt it is the impulse
   bool pierced = false;
   /** [N m] world. The mean torque on A about the origin of its link (an object's frame), which moves on from part to part, is
