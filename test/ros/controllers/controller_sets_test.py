@@ -42,7 +42,7 @@ class ControllerSetsTest(ControllerTestCase):
         for name, ok in (("arm_controller", True), ("late_controller", True), ("joint_state_controller", True), ("odd_controller", False),
                          ("no_controller", False), ("bad_controller", False)):
             self.assertEqual(manage("load_controller", LoadController, name).ok, ok, name)
-        wait_until(lambda: any("AckermannSteeringController" in e for e in self.errors()), "a line about the type")
+        wait_until(lambda: any("FourWheelSteeringController" in e for e in self.errors()), "a line about the type")
 
         self.assertTrue(switch(["arm_controller", "joint_state_controller"], []), "what runs may be started")
         self.assertFalse(switch(["rival_controller"], []))
