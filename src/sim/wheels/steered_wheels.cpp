@@ -124,7 +124,7 @@ double SteeredWheels::angleFor(const DriveTwist& wanted, double now) const {
 double SteeredWheels::speedFor(const DriveTwist& twist, const Steering& steering) const {
   if (!pulls_) return twist.linear / std::cos(steering.now);
   if (takes_angles_) return twist.linear;
-  // Of the velocity that the middle wheel is to have, what it has along itself: so none runs away while it is turned.
+  // The middle wheel's speed is the part of its wanted velocity along itself, so that it does not run away while it is turned.
   const bool is_square = M_PI / 2 - std::abs(steering.wanted) < SQUARE;
   const double across = is_square ? twist.angular * wheelbase_ : twist.linear * std::tan(steering.wanted);
   return twist.linear * std::cos(steering.now) + across * std::sin(steering.now);

@@ -22,7 +22,7 @@ class SteeredWheels : public Undercarriage {
   DriveTwist rolled(const std::vector<dynamics::JointState>& joints) const override;
 
  private:
-  /** Where a steering axis stands on the base [m], ahead and to the left of the rear axle's middle. */
+  /** Place of a steering axis on the base [m], ahead and to the left of the rear axle's middle. */
   struct Pin {
     double x = 0, y = 0;
   };

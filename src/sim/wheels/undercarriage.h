@@ -1,4 +1,4 @@
-// What carries a drive: from twists to its joints, and back from what its joints do.
+// Wheels and steering of a drive: its joints' motion for a twist, and the twist for its joints' motion.
 #pragma once
 
 #include <memory>

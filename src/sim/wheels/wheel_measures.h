@@ -13,7 +13,7 @@ int jointAbove(int link, const model::RobotModel& robot);
 int steeringAbove(int joint, const SteeringConfig& steering, const model::RobotModel& robot);
 
 /**
- * Where a joint stands on a drive's base [m], ahead and to the left of its origin, all joints at 0.
+ * Place of a joint on a drive's base [m], ahead and to the left of its origin, all joints at 0.
  * @throws InputError: the URDF has no such joint
  */
 Eigen::Vector2d placeInBase(const std::string& joint, const ControllerConfig& controller, const model::RobotModel& robot);

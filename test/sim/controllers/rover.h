@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/simulation_scene.h"
+#include "sim/controllers/wheeled_scene.h"
 
 namespace blem_sim::sim {
 
@@ -31,14 +31,7 @@ inline std::string roverUrdf(const std::string& blocks = "") {
 
 /** It stands on a plane, its wheels hold by friction 1, its ball slides. */
 inline SimulationConfig roverScene(const std::string& blocks = "") {
-  SimulationConfig config;
-  config.contact.surface.friction = 1;
-  EnvironmentConfig plane;
-  plane.name = "plane";
-  plane.plane = Eigen::Vector4d(0, 0, 1, 0);
-  config.environments = {plane};
-  config.robots = {robot("rover", roverUrdf(blocks), false)};
-  config.robots[0].X_WR = makePose({0, 0, ROVER_WHEEL});
+  SimulationConfig config = wheeledScene(robot("rover", roverUrdf(blocks), false), ROVER_WHEEL);
   config.robots[0].links["caster"].friction = 0.0;
   return config;
 }

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "sim/simulation_scene.h"
+#include "sim/controllers/wheeled_scene.h"
 
 namespace blem_sim::sim {
 
@@ -57,14 +57,7 @@ inline std::string tricycleUrdf(const std::string& blocks = "") {
 
 /** The robot named car stands on a plane, where its wheels hold by friction 1. @param drive of its configuration */
 inline SimulationConfig steeredScene(const std::string& urdf, const ControllerConfig& drive) {
-  SimulationConfig config;
-  config.contact.surface.friction = 1;
-  EnvironmentConfig plane;
-  plane.name = "plane";
-  plane.plane = Eigen::Vector4d(0, 0, 1, 0);
-  config.environments = {plane};
-  config.robots = {robot("car", urdf, false)};
-  config.robots[0].X_WR = makePose({0, 0, CAR_WHEEL});
+  SimulationConfig config = wheeledScene(robot("car", urdf, false), CAR_WHEEL);
   config.robots[0].motors = MotorDefault::COMPUTED;
   config.robots[0].motor.clear();
   config.robots[0].controllers = {drive};
