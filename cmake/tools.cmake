@@ -23,11 +23,13 @@ file(GLOB scene_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tools/make_d
 add_executable(make_demo_scenes ${scene_sources})
 target_link_libraries(make_demo_scenes blem_sim_geometry)
 
-# Pictures of worlds, drawn by the VTK that PCL brings. Before VTK 9 its parts have other names, and asking for one that is not there ends CMake.
+# Pictures of worlds, drawn by the VTK that PCL brings. Before VTK 9 its parts have other names, asking for one that is not there ends CMake, and
+# PCL defines that those for styles and type are started wherever VTK is.
 set(vtk_parts CommonCore CommonDataModel CommonExecutionModel RenderingCore RenderingOpenGL2 IOImage)
 find_package(VTK 9 QUIET COMPONENTS ${vtk_parts})
 if(NOT VTK_FOUND)
   find_package(VTK QUIET)
+  list(APPEND vtk_parts InteractionStyle RenderingFreeType)
   list(TRANSFORM vtk_parts PREPEND vtk OUTPUT_VARIABLE VTK_LIBRARIES)
 endif()
 if(NOT TARGET VTK::RenderingOpenGL2 AND NOT TARGET vtkRenderingOpenGL2)

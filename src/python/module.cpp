@@ -134,7 +134,7 @@ void addLoads(Class* simulator) {
   simulator->def("clear_wrenches", &Simulation::clearWrenches, arg("body"), "Ends all apply_wrench of a body.");
 }
 
-void addClearance(Class* simulator, const py::module_& module) {
+void addClearance(Class* simulator, const py::module& module) {
   py::class_<SimulationClearance> clearance(
       module, "Clearance",
       "A robot in any pose among the things around it, which stand as they stood when it was made, by\n"

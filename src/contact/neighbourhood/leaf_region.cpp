@@ -80,8 +80,9 @@ void placeBox(const MeshSide& side, const geometry::Bvh::Node& node, const Vecto
   for (int k = 0; k < 3; ++k) {
     double lower = std::numeric_limits<double>::infinity(), upper = -lower;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      for (const int corner : side.mesh.elements[side.bvh.order()[i]]) {
-        const double at = axes[k].dot(side.mesh.vertices[corner]);
+      const Vector3i& face = side.mesh.elements[side.bvh.order()[i]];
+      for (int corner = 0; corner < 3; ++corner) {
+        const double at = axes[k].dot(side.mesh.vertices[face[corner]]);
         lower = std::min(lower, at);
         upper = std::max(upper, at);
       }

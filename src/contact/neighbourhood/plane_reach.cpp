@@ -54,8 +54,9 @@ PlaneReach planeReach(const MeshSide& side, int face) {
     reach.per_height = std::max(reach.per_height, std::min((up - normal).norm(), (up + normal).norm()));
     for (int k = 0; k < 3; ++k) {
       if (side.topology.isFlatEdge(side.topology.edgeOf(face, k))) continue;
-      for (const int corner : side.mesh.elements[faces.of[i]]) {
-        const double outside = own.sides[k].w - vector3(own.sides[k]).dot(side.mesh.vertices[corner]);
+      for (int corner = 0; corner < 3; ++corner) {
+        const Vector3& point = side.mesh.vertices[side.mesh.elements[faces.of[i]][corner]];
+        const double outside = own.sides[k].w - vector3(own.sides[k]).dot(point);
         reach.flat = std::max(reach.flat, outside + 3 * CLOSED / sharpness(other));  // vertices over it may lie so little beside it
       }
     }

@@ -49,10 +49,10 @@ BLEM_SIM_INLINE TwoFours squareRoot(const TwoFours& x) { return {rootOf(x.low, L
 BLEM_SIM_INLINE Eight squareRoot(const Eight& x) { return rootOf(x, 2 * LANES); }
 
 /** Number `i` of each lane's numbers. */
-BLEM_SIM_INLINE void gather(const double* const (&from)[2 * LANES], int i, TwoFours* out) {
+BLEM_SIM_INLINE void gather(double* const (&from)[2 * LANES], int i, TwoFours* out) {
   *out = {Four{from[0][i], from[1][i], from[2][i], from[3][i]}, Four{from[4][i], from[5][i], from[6][i], from[7][i]}};
 }
-BLEM_SIM_INLINE void gather(const double* const (&from)[2 * LANES], int i, Eight* out) {
+BLEM_SIM_INLINE void gather(double* const (&from)[2 * LANES], int i, Eight* out) {
   *out = Eight{from[0][i], from[1][i], from[2][i], from[3][i], from[4][i], from[5][i], from[6][i], from[7][i]};
 }
 

@@ -40,7 +40,7 @@ struct EightBodies {
 };
 
 template <typename Numbers>
-BLEM_SIM_INLINE EightBodies<Numbers> gatherBodies(const double* const (&from)[SWEEP_LANES]) {
+BLEM_SIM_INLINE EightBodies<Numbers> gatherBodies(double* const (&from)[SWEEP_LANES]) {
   Numbers v[6];
   for (int i = 0; i < 6; ++i) gather(from, i, &v[i]);
   return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};

@@ -60,7 +60,7 @@ struct RandomMatrix {
 
   void expectSolves() {
     Eigen::VectorXd right(matrix.size());
-    for (double& x : right) x = uniform();
+    for (int i = 0; i < right.size(); ++i) right[i] = uniform();
     Eigen::VectorXd x = right;
     ASSERT_TRUE(matrix.factor(&team));
     matrix.solve(x);
