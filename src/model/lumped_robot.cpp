@@ -116,11 +116,11 @@ class Lumping {
     if (!given) takeInertialOfShapes(&body);
     if (!(body.inertial.mass > 0) && isKeptApart(body))
       throw InputError(
-          fmt::format("{}: a force_torque sensor at its fixed joint keeps it a body of its own, but its mass is {} kg; give it a "
+          fmt::format("{}: a force_torque sensor at its fixed joint keeps it a body of its own, but its mass is {:g} kg; give it a "
                       "positive mass, or leave the sensor out",
                       who, body.inertial.mass));
     if (!(body.inertial.mass > 0))
-      throw InputError(fmt::format("{}: it moves, but its mass is {} kg; give it a positive mass", who, body.inertial.mass));
+      throw InputError(fmt::format("{}: it moves, but its mass is {:g} kg; give it a positive mass", who, body.inertial.mass));
     repairInertia(who, &body.inertial, &lumped_.notes);
   }
 

@@ -74,7 +74,7 @@ void checkInertial(const Element& inertial, const std::string& where) {
   if (!mass) refuse(where, "<inertial> without <mass value=\"...\"/> in kg; add it or leave <inertial> out");
   if (!inertia) refuse(where, "<inertial> without <inertia .../> in kg m^2; add it or leave <inertial> out");
   const double value = numbers(*mass, "value", 1, where)[0];
-  if (value < 0) refuse(where, fmt::format("mass {} kg is negative; give it its true mass", value));
+  if (value < 0) refuse(where, fmt::format("mass {:g} kg is negative; give it its true mass", value));
   for (const char* name : {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}) numbers(*inertia, name, 1, where);
 }
 
