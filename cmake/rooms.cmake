@@ -30,22 +30,27 @@ blem_sim_room(reduction blem_sim_contact)
 blem_sim_precompiled_as(blem_sim_reduction blem_sim_geometry)
 target_link_libraries(blem_sim_reduction PRIVATE PkgConfig::TBB)
 
+# What takes most of the time of sanitized runs.
+if(BLEM_SIM_SANITIZE)
+  set(vector_code -O2)
+endif()
+
 # The kernels of the contact search, one source for several instruction sets; the fastest that the machine has is chosen when it runs.
 set(kernels ${PROJECT_SOURCE_DIR}/src/contact/kernels)
 set_source_files_properties(${kernels}/kernels_avx2.cpp ${kernels}/kernels_avx512.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_sources(blem_sim_contact PRIVATE ${kernels}/kernels_avx2.cpp ${kernels}/kernels_avx512.cpp)
-  set_source_files_properties(${kernels}/kernels_avx2.cpp PROPERTIES COMPILE_OPTIONS "-mavx2")
+  set_source_files_properties(${kernels}/kernels_avx2.cpp PROPERTIES COMPILE_OPTIONS "-mavx2;${vector_code}")
   # GCC 12 warns of its own headers there.
   set_source_files_properties(${kernels}/kernels_avx512.cpp PROPERTIES COMPILE_OPTIONS
-    "-mavx512f;-mavx512dq;-mavx512vl;-mavx512bw;-mprefer-vector-width=512;-Wno-maybe-uninitialized;-Wno-uninitialized")
+    "-mavx512f;-mavx512dq;-mavx512vl;-mavx512bw;-mprefer-vector-width=512;-Wno-maybe-uninitialized;-Wno-uninitialized;${vector_code}")
   set_source_files_properties(${kernels}/kernels.cpp PROPERTIES COMPILE_DEFINITIONS BLEM_SIM_X86_KERNELS)
 endif()
 
 # Square roots and comparisons as vector code; changes no result, only what becomes of errno and the flags of exceptions.
 foreach(lanes reduction/lanes/reduction_lanes dynamics/lanes/contact_lanes dynamics/lanes/joint_lanes dynamics/lanes/sweep_lanes)
   # Without precompiled headers, which bring their own options.
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${lanes}.cpp PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math"
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${lanes}.cpp PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math;${vector_code}"
     SKIP_PRECOMPILE_HEADERS ON)
 endforeach()
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)

@@ -120,7 +120,7 @@ TEST(Heaps, PouredSpheresGainNoEnergy) {
 TEST(Heaps, TowersOfTwentyAndThirtyRest) {
   for (const int cubes : SANITIZED ? std::vector<int>{20} : std::vector<int>{20, 30}) {
     Simulator simulator(tower(cubes), model::UriResolver());
-    const Seen seen = run(&simulator, 2);
+    const Seen seen = run(&simulator, SANITIZED ? 1 : 2);
     EXPECT_EQ(seen.trouble, 0) << cubes;
     EXPECT_LT(seen.speed, 1e-6) << cubes;
     EXPECT_LT(seen.gained, 1e-6) << cubes;
@@ -128,7 +128,7 @@ TEST(Heaps, TowersOfTwentyAndThirtyRest) {
 }
 
 TEST(Heaps, ATowerOfAHundredThatLandsAtOnceRests) {
-  Simulator simulator(tower(100), model::UriResolver());
+  Simulator simulator(tower(SANITIZED ? 40 : 100), model::UriResolver());
   const Seen seen = run(&simulator, 0.5);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & ENERGY_GAINED);

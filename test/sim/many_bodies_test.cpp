@@ -73,7 +73,7 @@ TEST(ManyBodies, MoreModelsThanAreSimulatedAreRefusedInOneLine) {
 TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   SimulationConfig config;
   config.environments = {ground(8)};
-  for (int i = 0; i < (SANITIZED ? 30 : 100); ++i)
+  for (int i = 0; i < (SANITIZED ? 12 : 100); ++i)
     config.objects.push_back(
         box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0.03 * (i % 6), 0.03 * (i / 6 % 6), 0.06 + 0.03 * (i / 36))));
   Simulator simulator(config, model::UriResolver());

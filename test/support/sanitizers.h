@@ -1,4 +1,5 @@
-// Fewer samples of long searches under the sanitizers, which make everything some thirty times slower.
+// Fewer samples and shorter runs under the sanitizers, which make everything some thirty times slower and look at code that the release
+// tests run in full.
 #pragma once
 
 #include <algorithm>

@@ -86,7 +86,7 @@ TEST(ContactBudget, APalletCarriesMoreThanItsBudgetHasContacts) {
 }
 
 TEST(ContactBudget, ATrayOfAHundredIsLifted) {
-  const int rows = SANITIZED ? 8 : 10;
+  const int rows = SANITIZED ? 6 : 10;
   constexpr double LIFT = 0.2;
   const SimulationConfig config = loadedTray(rows);
   Simulator simulator(config, model::UriResolver());

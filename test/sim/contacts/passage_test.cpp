@@ -48,7 +48,7 @@ SimulationConfig hitPlate(double thickness, double gap, double speed, double res
 TEST(Passage, PlateAtRestOverASheetThatIsHitStaysAboveIt) {
   for (const double thickness : {0.0, 0.001, 0.003, 0.006}) {
     for (const double speed : {5.0, 10.0, 20.0}) {
-      for (const double gap : {0.0005, 0.002, 0.005, 0.01, 0.02}) {
+      for (const double gap : SANITIZED ? std::vector<double>{0.005} : std::vector<double>{0.0005, 0.002, 0.005, 0.01, 0.02}) {
         for (const double restitution : {0.0, 0.3, 0.6}) {
           SCOPED_TRACE(testing::Message() << 1e3 * thickness << " mm thick, " << speed << " m/s, gap " << 1e3 * gap << " mm, e "
                                           << restitution);

@@ -12,7 +12,7 @@ class Rain : public testing::TestWithParam<const char*> {};
 
 TEST_P(Rain, staysOnTheFile) {
   SKIP_WITHOUT_SHARED_DATA(GetParam());
-  const RainOutcome outcome = rainOn(*sharedData(GetParam()), SANITIZED ? 0.1 : 1, 2);
+  const RainOutcome outcome = rainOn(*sharedData(GetParam()), SANITIZED ? 0.05 : 1, 2);
   EXPECT_GE(outcome.balls, 24);
   if (!SANITIZED) {
     EXPECT_GT(outcome.touched, outcome.balls / 3);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sim/simulation_scene.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -73,7 +74,8 @@ TEST(Seams, CubeSlidesAsOverOneMesh) {
   const std::vector<Slide> slides = {{1, 0, 0.5, 0.001, false},   {1, 0, 0, 0.001, false},   {3, 0, 0.5, 0.001, false},
                                      {3, 0.3, 0.5, 0.001, false}, {3, 0.3, 0, 0.005, false}, {10, 0, 0.2, 0.001, false},
                                      {10, 0.5, 0, 0.001, false},  {3, 0, 0, 0.001, true},    {3, 0.3, 0.5, 0.001, true}};
-  for (const Slide& how : slides) {
+  for (std::size_t k = SANITIZED ? 2 : 0; k < slides.size(); k += SANITIZED ? 3 : 1) {
+    const Slide& how = slides[k];
     const std::vector<dynamics::BodyState> expected = slide(whole(), how);
     for (const Cut& cut : cuts()) {
       const std::vector<dynamics::BodyState> states = slide(cut.pieces, how);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/simulation_scene.h"
+#include "support/sanitizers.h"
 #include "support/shared_packages.h"
 
 namespace blem_sim::sim {
@@ -54,7 +55,7 @@ TEST(Squeeze, JawsAtTheirStopsPushAsTheirMotorDoes) {
       Simulator simulator(heldPlate(too_wide, turn), model::UriResolver());
       simulator.commandJoints(0, {{"close"}, {0.05}, {}, {}});
       stepFor(&simulator, 0.05);
-      for (int i = 0; i < 200; ++i) {
+      for (int i = 0; i < (SANITIZED ? 50 : 200); ++i) {
         const StepReport& report = simulator.step();
         EXPECT_EQ(report.status & ~static_cast<std::uint32_t>(JOINT_LIMIT_HIT), STEP_OK);
         for (const char* jaw : {"jaws::left", "jaws::right"})
@@ -80,7 +81,8 @@ TEST(Squeeze, ARobotiqGripperLetsGoOfAPlateInItsKnuckles) {
   Simulator simulator(config, model::UriResolver(sharedPackages()));
   simulator.commandJoints(0, {{"finger_joint"}, {0.7}, {}, {}});
   double hardest = 0;
-  for (int i = 0; i < 150; ++i) {
+  // Nearly as hard after 40 steps: 849 N, 874 N after 150.
+  for (int i = 0; i < (SANITIZED ? 40 : 150); ++i) {
     for (const ContactReport& contact : simulator.step().contacts) hardest = std::max(hardest, contact.force.norm());
   }
   // 14 N m at a lever of 1 mm between a knuckle's hinge and the plate.

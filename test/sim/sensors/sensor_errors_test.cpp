@@ -7,6 +7,7 @@
 
 #include "blem_sim/sim/sensor_values.h"
 #include "sim/simulation_scene.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -193,6 +194,8 @@ double deviationOf(const std::vector<double>& values) {
 /** A number of each quantity of the wrench, the tilt and the motors, by sensor. */
 const std::vector<std::pair<int, std::array<std::size_t, 2>>> QUANTITIES = {{1, {0, 3}}, {2, {0, 2}}, {3, {0, 1}}};
 
+constexpr int COUNT = SANITIZED ? 750 : 3000;  // of samples: statistics are as close as their number lets them
+
 TEST(SensorNoise, OfEachQuantityHasItsDeviationAndBias) {
   for (const auto& [which, numbers] : QUANTITIES)
     for (const std::size_t quantity : {0u, 1u}) {
@@ -200,7 +203,6 @@ TEST(SensorNoise, OfEachQuantityHasItsDeviationAndBias) {
       config.robots[0].sensors[which].noise = {};
       config.robots[0].sensors[which].noise[quantity].stddev = 0.5;
       config.robots[0].sensors[which].noise[quantity].bias = 3;
-      constexpr int COUNT = 3000;
       const auto errors = errorsOf(config, which, numbers[quantity], COUNT), others = errorsOf(config, which, numbers[1 - quantity], 100);
       EXPECT_NEAR(meanOf(errors), 3, 3 * 0.5 / std::sqrt(COUNT)) << which << " " << quantity;
       EXPECT_NEAR(deviationOf(errors), 0.5, 3 * 0.5 / std::sqrt(2 * COUNT)) << which << " " << quantity;
@@ -219,10 +221,10 @@ TEST(SensorNoise, BiasIsDrawnOncePerNumberAndWalks) {
       EXPECT_GT(std::abs(constant[0]), 1e-3);
       for (const double error : constant) EXPECT_NEAR(error, constant[0], 1e-12);
       noise.bias_stddev = 0.7;
-      const auto walking = errorsOf(config, which, numbers[quantity], 3001);
+      const auto walking = errorsOf(config, which, numbers[quantity], COUNT + 1);
       std::vector<double> ways;
       for (std::size_t i = 1; i < walking.size(); ++i) ways.push_back(walking[i] - walking[i - 1]);
-      EXPECT_NEAR(deviationOf(ways), 0.07, 3 * 0.07 / std::sqrt(6000)) << which << " " << quantity;
+      EXPECT_NEAR(deviationOf(ways), 0.07, 3 * 0.07 / std::sqrt(2 * COUNT)) << which << " " << quantity;
     }
 }
 
