@@ -4,6 +4,7 @@ import array
 import math
 import os
 import random
+import re
 import resource
 import signal
 import subprocess
@@ -29,6 +30,7 @@ NAME = "/starting_blem_sim"
 DATA = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
 WORLD = os.path.join(DATA, "world.yaml")
 LARGEST = 65536  # [bytes] of a file, where the disk is to be full
+STEPS_OF_16_KB = 2048  # of a record, at 8 bytes at least
 
 
 def on_sphere(rng):
@@ -179,12 +181,20 @@ class StartupTest(unittest.TestCase):
         time.sleep(1)
         told = end()
         self.assertFalse(told.success)
-        self.assertIn("full.bag ends after step", told.status_message)
+        told_step = int(re.search("full.bag ends at step ([0-9]+) or up to 16 kB before", told.status_message).group(1))
         self.assertIn("(File too large)", told.status_message, "the system's reason")
         wait_until(lambda: begin(whole).success, "the next record")
         self.assertTrue(end().success)
         self.assertEqual(subprocess.call(["rosrun", "blem_sim", "replay", whole]), 0)
+        self.assertTrue(told_step - STEPS_OF_16_KB < self.replayed_steps(full) <= told_step)
         self.end(process, signal.SIGINT)
+
+    def replayed_steps(self, record):
+        """Steps of a record that was cut short."""
+        replay = lambda: subprocess.run(["rosrun", "blem_sim", "replay", record], stderr=subprocess.PIPE, universal_newlines=True).stderr
+        self.assertIn("its disk was full; rosbag reindex", replay())
+        subprocess.check_call(["rosbag", "reindex", "-q", record])
+        return int(re.search("no end after step ([0-9]+), and is the same up to there", replay()).group(1))
 
     def test_record_of_a_node_that_was_killed_is_whole_up_to_its_end(self):
         record = os.path.join(tempfile.mkdtemp(dir="/tmp"), "inputs.bag")

@@ -110,7 +110,8 @@ void InputRecorder::writeSteps() {
 }
 
 void InputRecorder::giveUp(const char* why) {
-  given_up_ = "record: " + file_ + " ends after step " + std::to_string(steps_.first) + ": " + why + "; make room and record again";
+  given_up_ = "record: " + file_ + " ends at step " + std::to_string(steps_.first) + " or up to 16 kB before: " + why +
+              "; rosbag reindex mends it, make room and record again";
   ROS_ERROR("%s", given_up_.c_str());
   simulator_->watch(nullptr);
   file_.clear();

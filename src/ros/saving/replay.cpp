@@ -116,7 +116,7 @@ ReplayResult replay(const std::string& file) {
   } catch (const InputError&) {
     throw;
   } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(file + ": is cut short, its writer was killed; rosbag reindex makes a copy of what is there");
+    throw InputError(file + ": is cut short, its writer was killed or its disk was full; rosbag reindex makes a copy of what is there");
   } catch (const std::exception& error) {
     throw InputError(file + ": cannot be read as a bag: " + error.what() + "; check the path, or record it again");
   }
