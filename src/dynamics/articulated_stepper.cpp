@@ -291,6 +291,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   result->joint_wrenches.assign(scene->joints().size(), Wrench());
   result->free_work.assign(scene->joints().size(), 0);
   result->free_efforts.assign(scene->joints().size(), 0);
+  result->free_speeds.assign(scene->joints().size(), 0);
   forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
   // Nothing was changed yet: a step that broke down leaves everything as it was.
   result->finite = (space_.velocity.array().abs() < FASTEST).all();

@@ -1,4 +1,4 @@
-// Free ways of fast trees in the result of a solve, for those who book energy.
+// Free ways of fast trees in the result of a solve: for those who book energy, and for motors.
 #pragma once
 
 #include "problem/solved_island.h"
@@ -10,8 +10,8 @@ namespace blem_sim::dynamics {
 /** Whether any tree goes beside the way of its mean velocity. */
 bool hasFreeWays(const ForestMotion& motion);
 
-/** First part of the result's free_ways, free_work and free_efforts, which were set to zero. After the solve, before the island's trees
- * move. */
+/** First part of the result's free_ways, free_speeds, free_work and free_efforts, which were set to zero. After the solve, before the
+ * island's trees move. */
 void bookBeforeWay(const SolvedIsland& island, const ForestMotion& motion, SolverSpace* space, SolveResult* result);
 
 /** The other part, at the end of their way. */

@@ -99,7 +99,7 @@ struct Simulator::Impl {
   /** Says whether the step's contact forces miss Coulomb's law by too much. */
   void recordMisses();
   void recordEnergy(const MadeSolve& made);
-  void recordSaturation(const std::vector<dynamics::JointDrive>& drives);
+  void recordMotors(const MadeSolve& made);
   void report();
   /** Report of the state at hand, nothing having happened. */
   void reportWithoutStep();

@@ -36,10 +36,12 @@ void Simulator::Impl::recordEnergy(const MadeSolve& made) {
   if (gain.beyond_bound) report_.status |= ENERGY_GAINED;
 }
 
-void Simulator::Impl::recordSaturation(const std::vector<dynamics::JointDrive>& drives) {
-  for (std::size_t j = 0; j < drives.size(); ++j) {
+void Simulator::Impl::recordMotors(const MadeSolve& made) {
+  const std::vector<double>& free_speeds = made.result.free_speeds;
+  for (std::size_t j = 0; j < made.drives.size(); ++j) {
     const dynamics::JointState state = world_.world.jointState(static_cast<int>(j));
-    if (world_.motors[j].accept(drives[j], state, substepLength())) report_.status |= EFFORT_SATURATED;
+    if (world_.motors[j].accept(made.drives[j], state, substepLength())) report_.status |= EFFORT_SATURATED;
+    world_.motors[j].noteFreeWay(state, free_speeds.empty() ? 0 : free_speeds[j]);
     const dynamics::JointSpec& spec = world_.world.jointSpec(static_cast<int>(j));
     if (spec.kind == dynamics::JointKind::FIXED) continue;
     if (state.position < spec.lower + LIMIT_REACHED || state.position > spec.upper - LIMIT_REACHED) report_.status |= JOINT_LIMIT_HIT;

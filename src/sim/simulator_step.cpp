@@ -217,7 +217,7 @@ void Simulator::Impl::acceptSubstep(const MadeSolve& made) {
   recordSolve(made.result);
   part_reports_.startPart(substeps_.fraction());
   part_reports_.addJoints(made.result.joint_wrenches, made.result.motor_efforts);
-  recordSaturation(made.drives);
+  recordMotors(made);
   recordContacts(made);
   if (!passed_.empty()) report_.status |= CONTACT_UNRELIABLE;
   layer_watch_.look(made.start, passed_, substepTime(), &report_.layer_events);

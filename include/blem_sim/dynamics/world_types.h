@@ -119,6 +119,8 @@ struct SolveResult {
                                         ///< step; empty if none was
   std::vector<double> free_work;        ///< [J] per joint: what it took to keep its velocity on a free way, which the next step pays, less
                                   ///< what this one paid of the last; what its effort did beside its mean velocity's way; empty: none known
+  std::vector<double> free_speeds;  ///< [rad/s or m/s] per joint: by how much its velocity at the end of a free way is above the mean one
+                                    ///< of that way; 0 where its tree was not followed; empty: none known
   double residual = 0;    ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it
   double creep = 0;       ///< [rad/s or m/s] largest miss of velocities to momentum's balance, contacts, sticking joints, limits or loops
   int iterations = 0;     ///< of the solver, over all islands

@@ -27,6 +27,7 @@ JointMotor::JointMotor(const MotorSettings& settings, double initial_position) :
 void JointMotor::reset() {
   hold(initial_position_);
   added_effort_ = integral_ = 0;
+  free_way_.reset();
 }
 
 /** A mode's targets end with it. */
@@ -143,8 +144,14 @@ dynamics::JointDrive JointMotor::drive(const dynamics::JointState& state) {
     drive.target_velocity = sample_.velocity + (stiffness > 0 ? 0 : feed_forward / damping());
     return drive;
   }
-  giveEffort(stiffness * error_ + damping() * (sample_.velocity - state.velocity) + feed_forward, state.velocity, &drive);
+  giveEffort(stiffness * error_ + damping() * (sample_.velocity - wayVelocity(state)) + feed_forward, state.velocity, &drive);
   return drive;
+}
+
+// A joint that rests on a robot that whirls round ends each step with half a step of its free acceleration: its way is none.
+double JointMotor::wayVelocity(const dynamics::JointState& state) const {
+  const bool is_its_end = free_way_ && free_way_->position == state.position && free_way_->velocity == state.velocity;
+  return is_its_end ? state.velocity - free_way_->speed : state.velocity;
 }
 
 void JointMotor::driveExactly(dynamics::JointDrive* drive) const {
@@ -185,6 +192,11 @@ bool JointMotor::accept(const dynamics::JointDrive& drive, const dynamics::Joint
   return saturated;
 }
 
+void JointMotor::noteFreeWay(const dynamics::JointState& after, double speed) {
+  free_way_.reset();
+  if (speed != 0 && settings_.law == MotorLaw::PID) free_way_ = {after.position, after.velocity, speed};
+}
+
 /** An error from a target at rest that dry friction holds against p alone is not integrated: the joint would stick and slip about its
  * target for ever. */
 void JointMotor::integrate(double dt) {
@@ -194,9 +206,11 @@ void JointMotor::integrate(double dt) {
 }
 
 void JointMotor::save(geometry::StateWriter* writer) const {
-  writer->numbers({static_cast<double>(mode_), velocity_target_, added_effort_, integral_});
+  const double known = free_way_ ? static_cast<double>(Mode::COUNT) : 0;  // most joints have nothing to tell
+  writer->numbers({static_cast<double>(mode_) + known, velocity_target_, added_effort_, integral_});
   if (mode_ != Mode::POSITION) writer->number(command_time_);
   if (mode_ == Mode::DRIVE) writer->numbers({ramp_.velocity, ramp_.acceleration, ramp_.max_effort});
+  if (free_way_) writer->numbers({free_way_->position, free_way_->velocity, free_way_->speed});
   spline_.save(writer);
 }
 
@@ -206,13 +220,20 @@ void JointMotor::restoreRamp(geometry::StateReader* reader) {
 }
 
 void JointMotor::restore(geometry::StateReader* reader) {
-  mode_ = static_cast<Mode>(reader->choice(static_cast<int>(Mode::COUNT)));
+  constexpr int MODES = static_cast<int>(Mode::COUNT);
+  const int mode = reader->choice(2 * MODES);
+  mode_ = static_cast<Mode>(mode % MODES);
   velocity_target_ = reader->number();
   added_effort_ = reader->number();
   integral_ = reader->number();
   command_time_ = mode_ == Mode::POSITION ? 0 : reader->number();
   ramp_ = VelocityDrive();
   if (mode_ == Mode::DRIVE) restoreRamp(reader);
+  free_way_.reset();
+  if (mode >= MODES) {
+    free_way_.emplace();
+    for (double* number : {&free_way_->position, &free_way_->velocity, &free_way_->speed}) *number = reader->number();
+  }
   spline_.restore(reader);
 }
 

@@ -61,6 +61,8 @@ class JointMotor {
   dynamics::JointDrive drive(const dynamics::JointState& state);
   /** Call after an accepted (sub)step: integrates, and notes whether the effort limit was met. @return true if it was */
   bool accept(const dynamics::JointDrive& drive, const dynamics::JointState& after, double dt);
+  /** Call then. Eq. 7 answers to the velocity of the way, not to that at its end. @param speed SolveResult::free_speeds of the joint */
+  void noteFreeWay(const dynamics::JointState& after, double speed);
 
   /** Path that is followed; null while a velocity or an effort is kept. */
   const JointSpline* path() const { return mode_ == Mode::POSITION ? &spline_ : nullptr; }
@@ -79,6 +81,11 @@ class JointMotor {
  private:
   enum class Mode { POSITION, VELOCITY, EFFORT, DRIVE, COUNT };
 
+  /** State [rad or m, rad/s or m/s] at the end of a free way, and by how much its velocity is above that of the way. */
+  struct FreeWay {
+    double position = 0, velocity = 0, speed = 0;
+  };
+
   void enter(Mode mode);
   bool isOverdue() const;
   double damping() const;
@@ -91,6 +98,8 @@ class JointMotor {
   void giveEffort(double effort, double velocity, dynamics::JointDrive* drive);
   bool atVelocityLimit(double effort, double velocity) const;
   void integrate(double dt);
+  /** [rad/s or m/s] Velocity of the way that led to a state, as an encoder tells it. */
+  double wayVelocity(const dynamics::JointState& state) const;
   void restoreRamp(geometry::StateReader* reader);
 
   MotorSettings settings_;
@@ -100,8 +109,9 @@ class JointMotor {
   double velocity_target_ = 0;  ///< adds to the spline's
   VelocityDrive ramp_;          ///< of DRIVE; its velocity is the one at command_time_
   double added_effort_ = 0;
-  double integral_ = 0;      ///< [N m or N] the integral term, k_I times the integral of the error
-  double command_time_ = 0;  ///< [s] of a velocity or an effort
+  double integral_ = 0;              ///< [N m or N] the integral term, k_I times the integral of the error
+  double command_time_ = 0;          ///< [s] of a velocity or an effort
+  std::optional<FreeWay> free_way_;  ///< in the last (sub)step, if the joint had one
   // Variables of the present (sub)step, not state.
   JointSample sample_;
   double now_ = 0, dt_ = 0;

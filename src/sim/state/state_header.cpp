@@ -9,7 +9,7 @@ namespace blem_sim::sim {
 namespace {
 
 // "BLEM" and the version, to be raised whenever the content of a state changes.
-constexpr std::uint64_t MAGIC = 0x424c454d00000000u, VERSION = 2, VERSION_BITS = 0xffffffffu;
+constexpr std::uint64_t MAGIC = 0x424c454d00000000u, VERSION = 3, VERSION_BITS = 0xffffffffu;
 
 std::uint64_t lengthOf(const SimulationState& state) {
   std::uint64_t length = 1 + state.world.numbers.size() + state.world.words.size() + state.numbers.size() + state.words.size();

@@ -113,6 +113,47 @@ TEST(JointMotor, NothingOfBeforeAddsToAVelocity) {
   }
 }
 
+/** Arm of 1 kg, 0.3 m from its hinge, which stands 0.1 m from the axis of a spindle. */
+SimulationConfig armOnSpindle(double arm_damping, double velocity_limit) {
+  const std::string inertial = R"(<mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>)";
+  SimulationConfig config;
+  config.gravity.setZero();
+  config.robots = {robot("governor",
+                         fmt::format(R"(<robot name="governor"><link name="base"/><link name="spindle"><inertial>{0}
+    <link name="arm"><inertial><origin xyz="0.3 0 0"/>{0}
+    <joint name="spin" type="continuous"><parent link="base"/><child link="spindle"/><axis xyz="0 0 1"/></joint>
+    <joint name="lift" type="revolute"><parent link="spindle"/><child link="arm"/><origin xyz="0.1 0 0"/><axis xyz="0 -1 0"/>
+      <limit lower="-2" upper="2" effort="1000" velocity="{1}"/></joint></robot>)",
+                                     inertial, velocity_limit),
+                         true)};
+  config.robots[0].initial_positions["lift"] = 0.6;
+  config.robots[0].motor["spin"] = MotorLaw::IMPLICIT_PD;
+  config.robots[0].gains["spin"] = {0, 0, 1e5};
+  config.robots[0].gains["lift"] = {400, 0, arm_damping};
+  return config;
+}
+
+/** A joint that rests on what whirls round is not damped, whatever velocity the free motion leaves it with at the end of a step. */
+TEST(JointMotor, Equation7KnowsThatAnArmOnASpindleRests) {
+  constexpr double RATE = 10, INERTIA = 0.1;
+  for (const double share : {0.03, 0.3}) {
+    for (const double velocity_limit : {1.0, 1e4}) {
+      Simulator simulator(armOnSpindle(share * INERTIA / STEP, velocity_limit), model::UriResolver());
+      simulator.commandJoints(0, {{"spin"}, {}, {RATE}, {}});
+      stepFor(&simulator, 2.5);
+      const SimulationState state = simulator.save();
+      stepFor(&simulator, 0.5);
+      const double q = simulator.world().jointState(simulator.robots()[0].joints[1]).position;
+      const double load = RATE * RATE * (0.1 + 0.3 * std::cos(q)) * 0.3 * std::sin(q);
+      EXPECT_NEAR(400 * (0.6 - q), load, 1e-4 * load) << share << ", " << velocity_limit;
+      const std::uint64_t hash = simulator.stateHash();
+      simulator.restore(state);
+      stepFor(&simulator, 0.5);
+      EXPECT_EQ(simulator.stateHash(), hash);
+    }
+  }
+}
+
 TEST(JointMotor, WithoutCommandOnlyFrictionActs) {
   MotorSettings mimic = settings(MotorLaw::PID, {100, 10, 2});
   mimic.commanded = false;
