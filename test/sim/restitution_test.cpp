@@ -124,5 +124,54 @@ TEST(BouncingMeshes, NeverGain) {
   }
 }
 
+/** Ball that flies onto the ground askew at 4 m/s, without weight; or onto a heavy plate that flies freely. */
+struct AskewBall {
+  static constexpr double SLIP = 2.6;  // [m/s] of its surface
+  double friction, restitution;
+  double height;  ///< [m] which tells where in a step it lands
+  double time_step;
+  bool onto_plate;
+
+  SimulationConfig config() const {
+    SimulationConfig config;
+    config.time_step = time_step;
+    config.gravity.setZero();
+    config.contact.surface.friction = friction;
+    config.contact.surface.restitution = restitution;
+    config.objects = {exactBall("ball", RADIUS, 0.003)};
+    config.objects[0].X_WO = makePose({0, 0, RADIUS + height});
+    config.objects[0].linear_velocity = {2, 0, -4};
+    config.objects[0].angular_velocity = {0, -0.6 / RADIUS, 0};
+    if (onto_plate) config.objects.push_back(box("plate", {4, 4, 0.1}, 3000, {0, 0, -0.0525}));
+    if (!onto_plate) config.environments = {ground()};
+    return config;
+  }
+  /** [m/s] That friction takes; it takes no more than what makes the ball roll. */
+  double braked() const { return std::min(friction * (1 + restitution) * 4, SLIP / 3.5); }
+};
+
+std::vector<AskewBall> askewBalls() {
+  std::vector<AskewBall> all;
+  for (const double height : {0.05, 0.0513, 0.0529})
+    for (const double time_step : {1e-3, 4e-3})
+      for (const bool onto_plate : {false, true})
+        for (const double friction : {0.1, 1.0})
+          for (const double restitution : {0.0, 0.6}) all.push_back({friction, restitution, height, time_step, onto_plate});
+  return all;
+}
+
+/** Friction acts on the ball's surface, wherever in a step the ball lands: it flies 16 mm in the longest of them. */
+TEST(BouncingBalls, TakeTheSpinThatFrictionGives) {
+  for (const AskewBall& l : askewBalls()) {
+    SCOPED_TRACE(fmt::format("friction {}, e {}, from {} m by {} s, {}", l.friction, l.restitution, l.height, l.time_step, l.onto_plate));
+    Simulator simulator(l.config(), model::UriResolver());
+    stepFor(&simulator, 0.02);
+    const dynamics::BodyState ball = bodyOf(simulator, "ball");
+    const double near = l.onto_plate ? 2e-4 : 2e-6;
+    EXPECT_NEAR(ball.v_WCom.x(), 2 - l.braked(), near);
+    EXPECT_NEAR(ball.w_WB.y() * RADIUS, -0.6 + 2.5 * l.braked(), near);
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::sim

@@ -50,6 +50,14 @@ double massOf(const SimulatedWorld& world, const contact::Collider& collider) {
   return mass;
 }
 
+/**
+ * Share of a gap, from B's surface on, after which what is round has its point before touch: as the bodies will meet, the lighter one goes
+ * most of the way. So friction turns a ball that lands by its radius, whichever part of a step is left to the landing.
+ */
+double meetingShare(const SimulatedWorld& world, const contact::Collider& a, const contact::Collider& b) {
+  return 1 / (1 + massOf(world, a) / massOf(world, b));
+}
+
 bool isCompliant(const contact::SurfaceProperties& surface) { return std::isfinite(surface.stiffness) && std::isfinite(surface.damping); }
 
 /** Makes a contact of meshes that cross a damper that lets go at SEPARATION_SPEED and never bounces: such contacts may contradict each
@@ -96,8 +104,10 @@ void ConstraintMaker::addConstraints(const SolveAhead& ahead, const contact::Con
   const contact::SurfaceProperties surface = contact::combineSurfaces(a.surface, b.surface, config_.friction_rule);
   if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) reduction::weighSprings(manifold.contacts, &workspace_);
   const bool recovers = ahead.contacts.crossings.find(manifold.a, manifold.b) != nullptr;
+  const double share = meetingShare(world, a, b);
   for (const contact::Contact& contact : manifold.contacts) {
     dynamics::ContactConstraint constraint = constraintOf(world, manifold, contact);
+    if (constraint.rolling > 0 && contact.depth < 0) constraint.point -= (share - 0.5) * contact.depth * contact.normal_BA;
     constraint.friction = surface.friction;
     constraint.restitution = surface.restitution;
     constraint.impact_friction_factor = surface.impact_friction_factor;
