@@ -69,7 +69,7 @@ YAML::Node nodeOf(const py::handle& value, const std::string& path, std::size_t 
 
 YAML::Node textNode(const std::string& text) {
   try {
-    return YAML::Load(text);
+    return sim::loadYaml(text);
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("{}:{}: is not YAML: {}", SOURCE, error.mark.line + 1, error.msg));
   }

@@ -17,7 +17,7 @@ namespace blem_sim {
 inline void fuzzYaml(const std::uint8_t* data, std::size_t size) {
   YAML::Node document;
   try {
-    document = YAML::Load(std::string(reinterpret_cast<const char*>(data), size));
+    document = sim::loadYaml(std::string(reinterpret_cast<const char*>(data), size));
   } catch (const YAML::Exception&) {
     return;
   }

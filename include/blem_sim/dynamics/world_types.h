@@ -121,7 +121,7 @@ struct SolveResult {
                                   ///< what this one paid of the last; what its effort did beside its mean velocity's way; empty: none known
   std::vector<double> free_speeds;  ///< [rad/s or m/s] per joint: by how much its velocity at the end of a free way is above the mean one
                                     ///< of that way; 0 where its tree was not followed; empty: none known
-  double residual = 0;    ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it
+  double residual = 0;              ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it
   double creep = 0;       ///< [rad/s or m/s] largest miss of velocities to momentum's balance, contacts, sticking joints, limits or loops
   int iterations = 0;     ///< of the solver, over all islands
   int lcp_errors = 0;     ///< the complementarity solver complained; the step was redone with more CFM

@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/config.h"
 #include "blem_sim/sim/state_file.h"
 
 namespace blem_sim::node {
@@ -33,7 +34,7 @@ void addTo(sim::RobotConfig* robot, const RecordedRobot& message, const std::str
 
 YAML::Node documentOf(const std::string& text, const std::string& source) {
   try {
-    return YAML::Load(text);
+    return sim::loadYaml(text);
   } catch (const YAML::Exception& error) {
     throw InputError(source + ": start: the configuration is no YAML: " + error.what() + "; record it again");
   }

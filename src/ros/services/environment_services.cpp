@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/config.h"
 #include "messages/conversions.h"
 
 namespace blem_sim::node {
@@ -14,7 +15,7 @@ namespace {
 YAML::Node settingsOf(const std::string& text) {
   YAML::Node settings;
   try {
-    settings = YAML::Load(text);
+    settings = sim::loadYaml(text);
   } catch (const YAML::Exception& error) {
     throw InputError(std::string("load_environment: settings: no YAML: ") + error.what());
   }

@@ -2,7 +2,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <filesystem>
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include "blem_sim/geometry/input_error.h"
 #include "config/config_sections.h"
@@ -12,6 +14,9 @@
 namespace blem_sim::sim {
 
 namespace {
+
+/** With a line's end behind a key: yaml-cpp 0.6.2 waits for ever for what follows one that ends a text inside of braces. */
+std::string withItsEnd(const std::string& text) { return text.empty() || text.back() != ':' ? text : text + '\n'; }
 
 PublishRates readRates(YamlReader& reader) {
   PublishRates rates;
@@ -93,13 +98,18 @@ SimulationConfig loadConfigFile(const std::string& file) {
   return parseConfig(loadYamlFile(file), file, std::filesystem::absolute(file).parent_path().string());
 }
 
+YAML::Node loadYaml(const std::string& text) { return YAML::Load(withItsEnd(text)); }
+
 YAML::Node loadYamlFile(const std::string& file) {
   if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{}: is a folder; give a YAML file in it", file));
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("{}: cannot be read; check the path", file));
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  const std::string text = withItsEnd(bytes.str());
   try {
-    checkYamlSize(file);
-    return YAML::LoadFile(file);
-  } catch (const YAML::BadFile&) {
-    throw InputError(fmt::format("{}: cannot be read; check the path", file));
+    checkYamlSize(text, file);
+    return YAML::Load(text);
   } catch (const YAML::ParserException& error) {
     throw InputError(fmt::format("{}:{}: is not YAML: {}", file, error.mark.line + 1, error.msg));
   }

@@ -4,7 +4,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
+#include <sstream>
 #include <vector>
 
 #include "blem_sim/geometry/input_error.h"
@@ -14,7 +14,7 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr std::streamoff SHORTEST_ENTRY = 2;  // [characters], as in [1,2,3]
+constexpr std::size_t SHORTEST_ENTRY = 2;  // [characters], as in [1,2,3]
 
 /** Counts the entries of the lists and maps that are open. */
 class EntryCounter : public YAML::EventHandler {
@@ -70,10 +70,9 @@ class EntryCounter : public YAML::EventHandler {
 
 }  // namespace
 
-void checkYamlSize(const std::string& file) {
-  std::ifstream stream(file, std::ios::ate);
-  if (!stream || stream.tellg() < SHORTEST_ENTRY * static_cast<std::streamoff>(MOST_MODELS)) return;
-  stream.seekg(0);
+void checkYamlSize(const std::string& text, const std::string& file) {
+  if (text.size() < SHORTEST_ENTRY * MOST_MODELS) return;
+  std::istringstream stream(text);
   EntryCounter counter(file);
   YAML::Parser(stream).HandleNextDocument(counter);
 }

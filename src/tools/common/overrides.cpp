@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/config.h"
 
 namespace blem_sim {
 
@@ -57,7 +58,7 @@ void overrideSetting(YAML::Node* root, const std::string& path, const std::strin
   YAML::Node node;
   try {
     // A clone carries no line numbers, which would be taken for the file's.
-    node = YAML::Clone(YAML::Load(value));
+    node = YAML::Clone(sim::loadYaml(value));
   } catch (const YAML::Exception& error) {
     throw InputError(fmt::format("--set {}: '{}' is not YAML: {}", path, value, error.msg));
   }

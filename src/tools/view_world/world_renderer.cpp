@@ -18,6 +18,7 @@
 #include <vtkRenderer.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnsignedCharArray.h>
+#include <vtkVersionMacros.h>
 #include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
@@ -92,6 +93,9 @@ vtkSmartPointer<vtkPolyData> dotData(const DrawnShape& shape) {
 vtkSmartPointer<vtkActor> actorOf(vtkPolyData* data) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(data);
+#if VTK_MAJOR_VERSION < 9
+  mapper->SetScalarMaterialModeToAmbientAndDiffuse();  // later ones always do
+#endif
   auto actor = vtkSmartPointer<vtkActor>::New();
   actor->SetMapper(mapper.GetPointer());
   return actor;

@@ -222,6 +222,15 @@ TEST(ConfigFile, AMillionObjectsAreRefusedWhereTheyBecomeTooMany) {
             file + ":100003: objects: has more than the 100000 entries that are simulated; give fewer");
 }
 
+TEST(ConfigFile, FilesThatEndInAKeyAreNoYaml) {
+  const TemporaryFolder folder;
+  for (const char* text : {"objects: [{name:", "{time_step:", "robots: [{gains: {default: {p:"}) {
+    const std::string file = folder.write("half.yaml", text);
+    EXPECT_TRUE(isOneLineWith(refusal([&] { loadConfigFile(file); }), {file, "is not YAML", "not found"})) << text;
+    EXPECT_THROW(loadYaml(text), YAML::Exception) << text;
+  }
+}
+
 TEST(ConfigFile, LongListsAreNamedWhereTheyAre) {
   const TemporaryFolder folder;
   std::string text = "robots: [{name: a}, {name: b, gains: [";
