@@ -231,8 +231,9 @@ void JointMotor::restore(geometry::StateReader* reader) {
   if (mode_ == Mode::DRIVE) restoreRamp(reader);
   free_way_.reset();
   if (mode >= MODES) {
-    free_way_.emplace();
-    for (double* number : {&free_way_->position, &free_way_->velocity, &free_way_->speed}) *number = reader->number();
+    FreeWay way;
+    for (double* number : {&way.position, &way.velocity, &way.speed}) *number = reader->number();
+    free_way_ = way;
   }
   spline_.restore(reader);
 }
