@@ -24,7 +24,7 @@ for ((k = 0; k <= last; ++k)); do
 done
 echo "$job"
 """,
-    "squeue": '#!/bin/sh\ntouch "$QUEUE/looked"\n[ ! -e "$QUEUE/queued" ] || cat "$QUEUE/queued"\n',
+    "squeue": '#!/bin/sh\ntouch "$QUEUE/looked_for_$PPID"\n[ ! -e "$QUEUE/queued" ] || cat "$QUEUE/queued"\n',
     "scancel": '#!/bin/sh\necho "$@" >>"$QUEUE/cancelled"\n',
     "scontrol": '#!/bin/sh\necho "JobId=1 JobState=OUT_OF_MEMORY Reason=OutOfMemory"\n',
 }
@@ -67,9 +67,8 @@ def test_jobs_of_a_killed_sweep_are_taken_over(case, queue):
     wait_until(lambda: (queue / "queued").exists() and len(case.query("SELECT job FROM runs WHERE job IS NOT NULL")) == 3)
     killed.kill()
     killed.wait()
-    (queue / "looked").unlink(missing_ok=True)
     second = subprocess.Popen(case.command("--on", "slurm"), env=case.environment, stdout=subprocess.DEVNULL)
-    wait_until((queue / "looked").exists)
+    wait_until((queue / ("looked_for_%d" % second.pid)).exists)
     assert second.poll() is None
     second.terminate()
     assert second.wait(20) == 1
