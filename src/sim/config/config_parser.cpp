@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -15,8 +16,19 @@ namespace blem_sim::sim {
 
 namespace {
 
-/** With a line's end behind a key: yaml-cpp 0.6.2 waits for ever for what follows one that ends a text inside of braces. */
-std::string withItsEnd(const std::string& text) { return text.empty() || text.back() != ':' ? text : text + '\n'; }
+/**
+ * A text that every yaml-cpp ends with: 0.6.2 waits for ever for what follows a key at an end inside of braces, and takes the character 4
+ * for an end. @throws YAML::ParserException if that is in it
+ */
+std::string withItsEnd(const std::string& text) {
+  const std::size_t end = text.find('\x04');
+  if (end != std::string::npos) {
+    YAML::Mark mark;
+    mark.line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
+    throw YAML::ParserException(mark, "the control character 4 is in it; take it out");
+  }
+  return text.empty() || text.back() != ':' ? text : text + '\n';
+}
 
 PublishRates readRates(YamlReader& reader) {
   PublishRates rates;
@@ -106,8 +118,8 @@ YAML::Node loadYamlFile(const std::string& file) {
   if (!stream) throw InputError(fmt::format("{}: cannot be read; check the path", file));
   std::ostringstream bytes;
   bytes << stream.rdbuf();
-  const std::string text = withItsEnd(bytes.str());
   try {
+    const std::string text = withItsEnd(bytes.str());
     checkYamlSize(text, file);
     return YAML::Load(text);
   } catch (const YAML::ParserException& error) {

@@ -231,6 +231,12 @@ TEST(ConfigFile, FilesThatEndInAKeyAreNoYaml) {
   }
 }
 
+TEST(ConfigFile, ControlCharactersThatEndATextAreNamed) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("damaged.yaml", "gravity: [0, 0, 0]\nrobots: [{name:\x04 a}]\n");
+  EXPECT_EQ(refusal([&] { loadConfigFile(file); }), file + ":2: is not YAML: the control character 4 is in it; take it out");
+}
+
 TEST(ConfigFile, LongListsAreNamedWhereTheyAre) {
   const TemporaryFolder folder;
   std::string text = "robots: [{name: a}, {name: b, gains: [";
