@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -11,24 +10,11 @@
 #include "config/config_sections.h"
 #include "config/scene_limits.h"
 #include "config/yaml_size.h"
+#include "config/yaml_text.h"
 
 namespace blem_sim::sim {
 
 namespace {
-
-/**
- * A text that every yaml-cpp ends with: 0.6.2 waits for ever for what follows a key at an end inside of braces, and takes the character 4
- * for an end. @throws YAML::ParserException if that is in it
- */
-std::string withItsEnd(const std::string& text) {
-  const std::size_t end = text.find('\x04');
-  if (end != std::string::npos) {
-    YAML::Mark mark;
-    mark.line = static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n'));
-    throw YAML::ParserException(mark, "the control character 4 is in it; take it out");
-  }
-  return text.empty() || text.back() != ':' ? text : text + '\n';
-}
 
 PublishRates readRates(YamlReader& reader) {
   PublishRates rates;
@@ -110,7 +96,7 @@ SimulationConfig loadConfigFile(const std::string& file) {
   return parseConfig(loadYamlFile(file), file, std::filesystem::absolute(file).parent_path().string());
 }
 
-YAML::Node loadYaml(const std::string& text) { return YAML::Load(withItsEnd(text)); }
+YAML::Node loadYaml(const std::string& text) { return YAML::Load(endingYaml(text)); }
 
 YAML::Node loadYamlFile(const std::string& file) {
   if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{}: is a folder; give a YAML file in it", file));
@@ -119,7 +105,7 @@ YAML::Node loadYamlFile(const std::string& file) {
   std::ostringstream bytes;
   bytes << stream.rdbuf();
   try {
-    const std::string text = withItsEnd(bytes.str());
+    const std::string text = endingYaml(bytes.str());
     checkYamlSize(text, file);
     return YAML::Load(text);
   } catch (const YAML::ParserException& error) {

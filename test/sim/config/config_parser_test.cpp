@@ -231,6 +231,19 @@ TEST(ConfigFile, FilesThatEndInAKeyAreNoYaml) {
   }
 }
 
+TEST(ConfigFile, ColonsBeforeABracketEnd) {
+  for (const char* text : {"[:]", "{:]", "[a, :]", "{a:]", "# [\n[b:]", "[\"x\\\"\", c:]", "['it''s', d:]"}) {
+    try {
+      loadYaml(text);
+    } catch (const YAML::ParserException& error) {
+      EXPECT_NE(error.msg, "") << text;
+    }
+  }
+  EXPECT_EQ(loadYaml("name: a[1:]")["name"].as<std::string>(), "a[1:]");
+  EXPECT_EQ(loadYaml("[\"b:]\", 'it''s:]']")[1].as<std::string>(), "it's:]");
+  EXPECT_EQ(loadYaml("[\"b:]\"]  # [c:]")[0].as<std::string>(), "b:]");
+}
+
 TEST(ConfigFile, ControlCharactersThatEndATextAreNamed) {
   const TemporaryFolder folder;
   const std::string file = folder.write("damaged.yaml", "gravity: [0, 0, 0]\nrobots: [{name:\x04 a}]\n");
