@@ -264,8 +264,7 @@ struct SimulationConfig {
  */
 SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory);
 SimulationConfig loadConfigFile(const std::string& file);
-/** The document in a text. In words where yaml-cpp is, even where 0.6.2 would never end: at a key with which a text ends inside of braces.
- * @throws YAML::Exception if it is not YAML */
+/** The document in a text, by a way that ends with every yaml-cpp. @throws YAML::Exception if it is not YAML */
 YAML::Node loadYaml(const std::string& text);
 /** The document in a file, unread. @throws InputError if it cannot be read or is not YAML */
 YAML::Node loadYamlFile(const std::string& file);

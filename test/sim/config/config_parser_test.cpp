@@ -5,6 +5,7 @@
 
 #include "blem_sim/sim/config.h"
 #include "config/config_sections.h"
+#include "config/yaml_text.h"
 #include "numbers/nearest_name.h"
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
@@ -232,6 +233,10 @@ TEST(ConfigFile, FilesThatEndInAKeyAreNoYaml) {
 }
 
 TEST(ConfigFile, ColonsBeforeABracketEnd) {
+  EXPECT_EQ(endingYaml("[a, :] # [:]"), "[a, : ] # [:]");
+  EXPECT_EQ(endingYaml("{a:]"), "{a: ]");
+  EXPECT_EQ(endingYaml("[{a:"), "[{a: ");
+  for (const char* kept : {"a:", "a: b[1:]", "[':]']", "[\"x\\\":]\"]", "[1] :]"}) EXPECT_EQ(endingYaml(kept), kept);
   for (const char* text : {"[:]", "{:]", "[a, :]", "{a:]", "# [\n[b:]", "[\"x\\\"\", c:]", "['it''s', d:]"}) {
     try {
       loadYaml(text);
