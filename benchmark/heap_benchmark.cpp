@@ -1,7 +1,8 @@
 // Heaps in a bin beside Bullet: cubes of twelve triangles (there boxes), exact spheres. Both take turns in one run, so that ratios mean
-// more than times. Processor time of the stepping thread, of stages too. One island on one thread and on two, in turns, by the wall's
-// clock. Arguments: --seconds=S simulated (4 if not given), --seed=N of the heap (1; heaps are chaotic, so that seeds tell more than a
-// repetition), then Google Benchmark's: --benchmark_filter='cubes/(30|100)/' chooses sizes.
+// more than times. Processor time of one thread, of stages too. One island on one thread, on two and on as many as the simulator chooses,
+// in turns, by the wall's clock (stages: processor time of the stepping thread). Arguments: --seconds=S simulated (4 if not given),
+// --seed=N of the heap (1; heaps are chaotic, so that seeds tell more than a repetition), then Google Benchmark's:
+// --benchmark_filter='cubes/(30|100)/' chooses sizes.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -19,7 +20,7 @@ namespace blem_sim {
 namespace {
 
 constexpr int TURN = 50;  // [steps] of one engine before it is the other's turn
-constexpr std::size_t STAGES = static_cast<std::size_t>(sim::Stage::COUNT);
+constexpr std::size_t STAGES = static_cast<std::size_t>(sim::Stage::COUNT), SOLVE = static_cast<std::size_t>(sim::Stage::SOLVE);
 double seconds_simulated = 4;
 int heap_seed = 1;
 
@@ -74,6 +75,12 @@ class Times {
   std::vector<double> all_;
 };
 
+dynamics::SolverSettings onThreads(int count) {
+  dynamics::SolverSettings solver;
+  solver.threads = count;
+  return solver;
+}
+
 double fastest(const sim::StepReport& report) {
   double fastest = 0;
   for (const dynamics::BodyState& body : report.bodies) fastest = std::max(fastest, body.v_WCom.norm());
@@ -92,7 +99,7 @@ struct Figures {
   double trouble = 0, crossing = 0, shortened = 0, deepest = 0, gained = 0, bullet_deepest = 0;
   void add(const sim::StepReport& report) {
     for (std::size_t s = 0; s < STAGES; ++s) stages[s].add(report.profile.seconds[s]);
-    const double solve = report.profile.seconds[static_cast<std::size_t>(sim::Stage::SOLVE)], speed = fastest(report);
+    const double solve = report.profile.seconds[SOLVE], speed = fastest(report);
     if (speed > TUMBLES && report.contacts.size() >= report.bodies.size()) solve_tumbling.add(solve);
     if (speed < RESTS) solve_resting.add(solve);
     trouble += report.status & sim::SOLVER_TROUBLE ? 1 : 0;
@@ -147,7 +154,7 @@ void count(const Heap& heap, const Figures& figures, const sim::Simulator& simul
   };
   add("step", figures.step);
   for (std::size_t s = 0; s < STAGES; ++s) add(sim::STAGE_NAMES[s], figures.stages[s]);
-  const Times& solve = figures.stages[static_cast<std::size_t>(sim::Stage::SOLVE)];
+  const Times& solve = figures.stages[SOLVE];
   counters["last_quarter_over_first"] = figures.step.mean(0.75, 1) / figures.step.mean(0, 0.25);
   counters["solve_last_quarter_over_first"] = solve.mean(0.75, 1) / solve.mean(0, 0.25);
   counters["trouble_share"] = figures.trouble / steps;
@@ -180,7 +187,7 @@ void count(const Heap& heap, const Figures& figures, const sim::Simulator& simul
 }
 
 void measure(const Heap& heap, benchmark::State& state) {
-  sim::Simulator simulator(heap.config(heap.count, heap_seed, {}), model::UriResolver(sharedPackages()));
+  sim::Simulator simulator(heap.config(heap.count, heap_seed, onThreads(1)), model::UriResolver(sharedPackages()));
   const std::unique_ptr<BulletHeap> bullet = makeBulletHeap(heap.scene(heap.count));
   Figures figures;
   for (auto _ : state) {
@@ -203,32 +210,44 @@ void addBesideBullet(const Heap& heap) {
   add(heap.name, heap.count, [heap](benchmark::State& state) { measure(heap, state); });
 }
 
-/** [us] wall time per step, mean over a turn. */
-double meanOfTurn(sim::Simulator* simulator, int steps) {
+/** Times [us] per step of a heap, means over all. */
+struct MeanTimes {
+  double step = 0, solve = 0;
+};
+
+/** Adds the times of a turn to the mean over so many. */
+void takeTurn(sim::Simulator* simulator, int turns, MeanTimes* mean) {
   const double start = wallSeconds();
-  for (int i = 0; i < steps; ++i) simulator->step();
-  return 1e6 * (wallSeconds() - start) / steps;
+  for (int i = 0; i < TURN; ++i) mean->solve += 1e6 * simulator->step().profile.seconds[SOLVE] / (TURN * turns);
+  mean->step += 1e6 * (wallSeconds() - start) / (TURN * turns);
 }
 
-/** The same heap on one thread and on two. */
+/** The same heap on one thread, on two, and on as many as the simulator chooses. */
 void compareThreads(int count, benchmark::State& state) {
-  std::unique_ptr<sim::Simulator> simulators[2];
-  for (const int threads : {1, 2}) {
-    dynamics::SolverSettings solver;
-    solver.threads = threads;
-    simulators[threads - 1] = std::make_unique<sim::Simulator>(heapInBin(count, heap_seed, solver), model::UriResolver(sharedPackages()));
-  }
+  constexpr std::array<const char*, 3> NAMES = {"one_thread", "two_threads", "chosen"};
+  const std::array<dynamics::SolverSettings, 3> settings = {onThreads(1), onThreads(2), dynamics::SolverSettings()};
+  std::vector<std::unique_ptr<sim::Simulator>> simulators;
+  for (const dynamics::SolverSettings& solver : settings)
+    simulators.push_back(std::make_unique<sim::Simulator>(heapInBin(count, heap_seed, solver), model::UriResolver(sharedPackages())));
   const int turns = static_cast<int>(std::lround(seconds_simulated / simulators[0]->config().time_step)) / TURN;
-  double mean[2] = {};
+  std::array<MeanTimes, 3> mean;
   for (auto _ : state) {
     for (int turn = 0; turn < turns; ++turn)
-      for (int i = 0; i < 2; ++i) mean[i] += meanOfTurn(simulators[i].get(), TURN) / turns;
-    state.SetIterationTime(1e-6 * mean[1]);
+      for (std::size_t i = 0; i < NAMES.size(); ++i) takeTurn(simulators[i].get(), turns, &mean[i]);
+    state.SetIterationTime(1e-6 * mean[2].step);
   }
-  state.counters["one_thread_mean_us"] = mean[0];
-  state.counters["two_threads_mean_us"] = mean[1];
-  state.counters["speed_up"] = mean[0] / mean[1];
-  state.counters["same_hash"] = simulators[0]->stateHash() == simulators[1]->stateHash() ? 1 : 0;
+  static std::array<MeanTimes, 3> of_100;
+  if (count == 100) of_100 = mean;
+  for (std::size_t i = 0; i < NAMES.size(); ++i) {
+    const std::string name = NAMES[i];
+    state.counters[name + "_mean_us"] = mean[i].step;
+    state.counters[name + "_solve_us"] = mean[i].solve;
+    state.counters[name + "_solve_over_100"] = mean[i].solve / of_100[i].solve;
+  }
+  state.counters["speed_up"] = mean[0].step / mean[1].step;
+  state.counters["speed_up_chosen"] = mean[0].step / mean[2].step;
+  const std::uint64_t hash = simulators[0]->stateHash();
+  state.counters["same_hash"] = simulators[1]->stateHash() == hash && simulators[2]->stateHash() == hash ? 1 : 0;
 }
 
 /** Takes an option out of the arguments. @param option as "--name=" @return its value, or `otherwise` */

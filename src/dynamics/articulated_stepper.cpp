@@ -38,7 +38,7 @@ NewtonReport afterAll(const NewtonReport& before, NewtonReport last) {
 class ArticulatedStepper : public Stepper {
  public:
   explicit ArticulatedStepper(const SolverSettings& settings)
-      : settings_(settings), arena_(std::min(settings.threads, tbb::this_task_arena::max_concurrency())) {}
+      : settings_(settings), arena_(std::min(mostThreads(settings.threads), tbb::this_task_arena::max_concurrency())) {}
 
   void step(Scene* scene, const StepInput& input, SolveResult* result) override;
   void save(const Scene& scene, geometry::StateWriter* writer) override;
@@ -64,7 +64,7 @@ class ArticulatedStepper : public Stepper {
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
   template <typename Work>
-  void forEachIsland(const Work& work);
+  void forEachIsland(int threads, const Work& work);
   void report(double dt, SolveResult* result) const;
   void remember(const StepInput& input, const SolveResult& result);
   void noteWritten(const Scene& scene, int tree);
@@ -252,13 +252,13 @@ void ArticulatedStepper::writeScene(Scene* scene) {
 
 // Islands share nothing that they write, so their order does not matter.
 template <typename Work>
-void ArticulatedStepper::forEachIsland(const Work& work) {
+void ArticulatedStepper::forEachIsland(int threads, const Work& work) {
   const bool alone = islands_.count() == 1 && islands_[0].contacts.size() < SHARED;
-  if (settings_.threads == 1 || alone) {
+  if (threads == 1 || alone) {
     for (int i = 0; i < islands_.count(); ++i) work(&islands_[i]);
   } else {
     const auto share = [&](Island* island) {
-      const int helpers = island->contacts.size() >= SHARED ? settings_.threads - 1 : 0;
+      const int helpers = island->contacts.size() >= SHARED ? threads - 1 : 0;
       island->solver.team()->with(helpers, [&] { work(island); });
     };
     arena_.execute([&] { tbb::parallel_for(0, islands_.count(), [&](int i) { share(&islands_[i]); }); });
@@ -292,7 +292,8 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   result->free_work.assign(scene->joints().size(), 0);
   result->free_efforts.assign(scene->joints().size(), 0);
   result->free_speeds.assign(scene->joints().size(), 0);
-  forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
+  const int threads = threadsFor(settings_.threads, input.contacts.size());
+  forEachIsland(threads, [&](Island* island) { solveIsland(*scene, input, island); });
   // Nothing was changed yet: a step that broke down leaves everything as it was.
   result->finite = (space_.velocity.array().abs() < FASTEST).all();
   if (!result->finite) {
@@ -300,7 +301,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
     return;
   }
   result->free_ways.assign(hasFreeWays(motion_) ? scene->bodies().size() : 0, Vector3::Zero());
-  forEachIsland([&](Island* island) { finishIsland(*scene, input, island, result); });
+  forEachIsland(threads, [&](Island* island) { finishIsland(*scene, input, island, result); });
   report(input.dt, result);
   remember(input, *result);
   writeScene(scene);

@@ -56,6 +56,7 @@ const StepReport& Simulator::Impl::step() {
 }
 
 void Simulator::Impl::startStep() {
+  threads_.expect(static_cast<std::size_t>(report_.reduced_contacts));
   fading_.setUp(wayUp());
   substeps_ = Substeps(most_ticks_);
   report_.status = STEP_OK;

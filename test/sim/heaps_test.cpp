@@ -217,6 +217,15 @@ TEST_P(StandingWalls, RestAndBearTheirWeight) {
 const std::vector<std::pair<int, int>> WALLS = {{8, 8}, {16, 16}, {18, 18}, {36, 5}, {36, 9}};
 INSTANTIATE_TEST_SUITE_P(Heaps, StandingWalls, ::testing::ValuesIn(WALLS.begin(), WALLS.begin() + (SANITIZED ? 1 : 5)));
 
+TEST(Heaps, CrowdsAreSharedByThreadsUnaskedToTheSameBits) {
+  SimulationConfig alone = wall(36, 9);
+  alone.solver.threads = 1;
+  Simulator one(alone, model::UriResolver()), chosen(wall(36, 9), model::UriResolver());
+  for (Simulator* simulator : {&one, &chosen}) run(simulator, SANITIZED ? 0.005 : 0.05);
+  EXPECT_GT(chosen.report().reduced_contacts, static_cast<int>(dynamics::CROWDED));
+  EXPECT_EQ(chosen.stateHash(), one.stateHash());
+}
+
 /** A wall of 159 cubes: more than 150 are a crowd. */
 class CrowdAtRest : public ::testing::Test {
  protected:

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -93,7 +94,7 @@ struct ContactConstraint {
 
 struct SolverSettings {
   std::string stepper = "articulated";  ///< a name in stepperTable()
-  int threads = 1;                      ///< for `articulated`: islands and the loops of large ones; the result is the same for any number
+  std::optional<int> threads;  ///< that share a step's islands, large islands' loops (`articulated`) and pairs; nothing: threadsFor()
   int quick_step_iterations = 50;
   double cfm = 1e-6;                  ///< constraint force mixing of contacts in ODE's steppers
   double correction_fraction = 0.2;   ///< of a contact's depth removed per step, at most at max_correction_speed
@@ -101,6 +102,18 @@ struct SolverSettings {
   double joint_erp = 0.2;
   double joint_cfm = 1e-10;
 };
+
+constexpr int MOST_CHOSEN_THREADS = 2;  ///< more were not measured
+constexpr std::size_t CROWDED = 1000;   ///< contacts of a step that takes one thread a millisecond or more
+
+/** Threads that share a step of so many contacts: as many as were asked for; if no number was, two for CROWDED ones, else one. Their number
+ *  does not show in the result. */
+inline int threadsFor(std::optional<int> asked, std::size_t contacts) {
+  return asked.value_or(contacts < CROWDED ? 1 : MOST_CHOSEN_THREADS);
+}
+
+/** The largest number that threadsFor() gives for any step. */
+inline int mostThreads(std::optional<int> asked) { return asked.value_or(MOST_CHOSEN_THREADS); }
 
 /** Result of one solve; lives until the next one. Indices go with the constraints, joints, bodies given. */
 struct SolveResult {

@@ -73,7 +73,7 @@ class Fields {
 
 void checkSolver(const dynamics::SolverSettings& solver) {
   const Fields fields("solver.");
-  fields.atLeastOne("threads", solver.threads);
+  if (solver.threads) fields.atLeastOne("threads", *solver.threads);
   fields.atLeastOne("quick_step_iterations", solver.quick_step_iterations);
   fields.number("cfm", solver.cfm, NumberRange::notNegative());
   fields.number("correction_fraction", solver.correction_fraction, NumberRange::fraction());

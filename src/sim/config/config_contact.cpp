@@ -16,6 +16,14 @@ std::optional<BoundaryWidth> readWidth(YamlReader* reader) {
   return BoundaryWidth(*metres);
 }
 
+std::optional<int> readThreads(YamlReader* reader) {
+  const YAML::Node node = reader->node("threads");
+  std::optional<int> number;
+  if (!node.IsDefined() || (node.IsScalar() && node.Scalar() == "auto")) return number;
+  reader->read("threads", &number, 1, "a whole number of at least 1, or auto");
+  return number;
+}
+
 }  // namespace
 
 ContactConfig readContact(YamlReader reader) {
@@ -47,7 +55,7 @@ dynamics::SolverSettings readSolver(YamlReader reader) {
   dynamics::SolverSettings solver;
   const std::vector<std::string> steppers = dynamics::stepperNames();
   if (const auto stepper = reader.choice("stepper", steppers)) solver.stepper = steppers[*stepper];
-  reader.read("threads", &solver.threads, 1);
+  solver.threads = readThreads(&reader);
   reader.read("quick_step_iterations", &solver.quick_step_iterations, 1);
   reader.read("cfm", &solver.cfm, NumberRange::notNegative());
   reader.read("correction_fraction", &solver.correction_fraction, NumberRange::fraction());

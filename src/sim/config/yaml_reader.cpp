@@ -139,12 +139,12 @@ void YamlReader::readRate(const std::string& key, double* value) {
   if (const YAML::Node found = node(key); found.IsDefined()) *value = isOff(found) ? RATE_OFF : number(key, found, range);
 }
 
-void YamlReader::read(const std::string& key, std::optional<int>* value, int lower) {
+void YamlReader::read(const std::string& key, std::optional<int>* value, int lower, const char* words) {
   const YAML::Node found = node(key);
   if (!found.IsDefined()) return;
-  const NumberRange range{static_cast<double>(lower), std::numeric_limits<int>::max(), false, "a whole number"};
+  const NumberRange range{static_cast<double>(lower), std::numeric_limits<int>::max(), false, words};
   const double given = number(key, found, range);
-  if (given != std::floor(given)) refuse(key, fmt::format("must be a whole number, not {}", quoted(found)));
+  if (given != std::floor(given)) refuse(key, fmt::format("must be {}, not {}", words, quoted(found)));
   *value = static_cast<int>(given);
 }
 

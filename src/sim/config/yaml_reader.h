@@ -52,7 +52,8 @@ class YamlReader {
   void read(const std::string& key, double* value, const NumberRange& range);
   void read(const std::string& key, std::optional<double>* value, const NumberRange& range);
   void read(const std::string& key, int* value, int lower);
-  void read(const std::string& key, std::optional<int>* value, int lower);
+  /** @param words what the number must be, in messages */
+  void read(const std::string& key, std::optional<int>* value, int lower, const char* words = "a whole number");
   void read(const std::string& key, std::uint64_t* value);
   void read(const std::string& key, Vector3* value);
   void read(const std::string& key, std::optional<Vector3>* value);

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <optional>
+
+#include "blem_sim/dynamics/world_types.h"
 
 namespace blem_sim::sim {
 
@@ -17,17 +20,24 @@ constexpr std::size_t PAIRS_AT_ONCE = 64;  ///< pairs in a piece of a loop that 
  *  of threads. */
 class StepThreads {
  public:
-  explicit StepThreads(int most) : arena_(std::min(most, tbb::this_task_arena::max_concurrency())), count_(arena_.max_concurrency()) {}
+  /** @param asked of SolverSettings; no more than the processors there are */
+  explicit StepThreads(std::optional<int> asked)
+      : asked_(asked), arena_(std::min(dynamics::mostThreads(asked), tbb::this_task_arena::max_concurrency())) {
+    expect(0);
+  }
 
-  int count() const { return count_; }
+  int most() const { return arena_.max_concurrency(); }
+
+  /** Takes as many threads as the loops of a step of so many contacts are worth. */
+  void expect(std::size_t contacts) { count_ = std::min(dynamics::threadsFor(asked_, contacts), most()); }
 
   /** @return work(); loops of TBB in it keep to these threads */
   template <typename Work>
   auto with(const Work& work) {
-    return arena_.execute(work);
+    return (count_ == 1 ? alone_ : arena_).execute(work);
   }
 
-  /** Calls body(i, thread) for each i from 0 to count - 1, in any order and at once, thread from 0 to count() - 1; up to a `piece` of them
+  /** Calls body(i, thread) for each i from 0 to count - 1, in any order and at once, thread from 0 to most() - 1; up to a `piece` of them
    *  in the caller's thread alone. */
   template <typename Body>
   void forAll(std::size_t count, std::size_t piece, const Body& body) {
@@ -55,8 +65,10 @@ class StepThreads {
   }
 
  private:
+  std::optional<int> asked_;
   tbb::task_arena arena_;
-  int count_;
+  tbb::task_arena alone_{1};
+  int count_ = 1;  // of the step at hand
 };
 
 }  // namespace blem_sim::sim

@@ -107,6 +107,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"contact: {reduction: best}", {"contact.reduction", "hull, hierarchical, kmeans, none"}},
         BadInput{"contact: {friction_rule: max}", {"contact.friction_rule", "harmonic_mean"}},
         BadInput{"solver: {stepper: bullet}", {"solver.stepper", "world_step"}},
+        BadInput{"solver: {threads: all}", {"solver.threads", "a whole number of at least 1, or auto", "'all'"}},
+        BadInput{"solver: {threads: 0}", {"solver.threads", "a whole number of at least 1, or auto"}},
         BadInput{"solver: {iterations: 3}", {"solver.iterations", "unknown key"}}, BadInput{"gravity: [0, 0]", {"gravity", "list of 3"}},
         BadInput{"gravity: -9.81", {"gravity", "list of 3"}}, BadInput{"time_step: 0.1\ntime_step: 0.2", {"time_step", "twice"}},
         BadInput{"just words", {"must be a map"}}, BadInput{"joint_state_rate: -3", {"joint_state_rate", "at least 0"}}));

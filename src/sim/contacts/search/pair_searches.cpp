@@ -17,7 +17,7 @@ Recovery lastApart(const FoundContacts& before, const Pose& X_AB_now, bool cross
 
 }  // namespace
 
-PairSearches::PairSearches(StepThreads* threads) : threads_(threads), workspaces_(static_cast<std::size_t>(threads->count())) {}
+PairSearches::PairSearches(StepThreads* threads) : threads_(threads), workspaces_(static_cast<std::size_t>(threads->most())) {}
 
 void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before, const FadingPoints& fading, WatchedPairs* pairs,
                         FoundContacts* found) {
