@@ -16,8 +16,8 @@ add_custom_target(demo DEPENDS blem_sim_node ${PROJECT_NAME}_generate_messages)
 
 # Without catkin's relay in the devel space: rosrun, which looks below the package's folder and so in scripts/build's too, would find two.
 install(PROGRAMS scripts/ros/expect_contacts_in_layer scripts/ros/play_trajectory scripts/ros/spawn_model scripts/ros/record scripts/ros/step_together
-  scripts/sweep/blem_sim_sweep DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(DIRECTORY scripts/sweep/sweeping DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} FILES_MATCHING PATTERN "*.py")
+  scripts/sweep/blem_sim_sweep scripts/worlds/world_from_sdf DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(DIRECTORY scripts/sweep/sweeping scripts/worlds/sdf DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION} FILES_MATCHING PATTERN "*.py")
 install(TARGETS blem_sim_node replay RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_reduction blem_sim_dynamics blem_sim_sim blem_sim_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}

@@ -36,7 +36,7 @@ std::string takeText(YAML::Node* parameters, const std::string& key, const std::
 void takeGazeboKeys(YAML::Node* parameters) {
   parameters->remove("enable_ros_network");
   if (!(*parameters)["world_name"].IsDefined()) return;
-  ROS_WARN("world_name: world files are SDF, which is not read; write the world as YAML (config/default.yaml), a plane stands in");
+  ROS_WARN("world_name: world files are SDF, which is not read; make a YAML of it by rosrun blem_sim world_from_sdf, a plane stands in");
   parameters->remove("world_name");
 }
 

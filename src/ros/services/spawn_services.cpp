@@ -61,7 +61,7 @@ SpawnServices::SpawnServices(const ros::NodeHandle& private_node, SimulationLoop
 
 void SpawnServices::addRefusals() {
   services_.add<SpawnModel>("spawn_sdf_model", [](const auto&, auto*) {
-    throw InputError("SDF is not read here; convert the model to URDF and call spawn_urdf_model, or load a mesh by load_environment");
+    throw InputError("SDF is not read here; make URDF of the model by rosrun blem_sim world_from_sdf, and call spawn_urdf_model");
   });
   services_.add<GetLightProperties>("get_light_properties", [](const auto&, auto*) { throw InputError(NO_LIGHTS); });
   services_.add<SetLightProperties>("set_light_properties", [](const auto&, auto*) { throw InputError(NO_LIGHTS); });
