@@ -115,7 +115,7 @@ def test_frames_nested_and_included_models_take_their_places(convert, tmp_path):
     (hook / "model.config").write_text("<model><sdf version='1.4'>old.sdf</sdf><sdf version='1.6'>new.sdf</sdf></model>")
     (hook / "new.sdf").write_text("<sdf version='1.6'>%s</sdf>" % model(link(SMALL % 1 + box("0.1 0.1 0.1")), "hook", "9 9 9 0 0 0"))
     nested = model(link(SMALL % 1), "inner", "0 0 1 0 0 0")
-    outer = ("<frame name='up'><pose>0 0 2 0 0 0</pose></frame>" + nested + link(SMALL % 1, "base") +
+    outer = ("<frame name='up'><pose>0 0 2 0 0 0</pose></frame>" + nested + link(SMALL % 1, "base", "0.1 0.2 0.3 0 0 0.5") +
              "<include><uri>model://hook</uri><pose relative_to='up'>0.5 0 0 0 0 0</pose></include>" +
              joint("", "a", "fixed", "base", "inner::l") + joint("", "b", "revolute", "base", "hook::l"))
     conversion = convert(model(outer, pose="0 5 0 0 0 1.5707963267948966"), "--models", "models", version="1.7")
