@@ -60,6 +60,7 @@ if(BULLET_FOUND)
   file(GLOB comparison_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/benchmark/comparison/*.cpp)
   add_executable(comparison EXCLUDE_FROM_ALL ${comparison_sources})
   target_link_libraries(comparison blem_sim_sim PkgConfig::BULLET PkgConfig::ODE)
+  target_include_directories(comparison PRIVATE ${PROJECT_SOURCE_DIR}/test)
   set_target_properties(comparison PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 endif()
 

@@ -10,6 +10,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/model/loaders.h"
+#include "support/temporary_folder.h"
 
 namespace blem_sim::model {
 namespace {
@@ -17,13 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 
 TEST(FileRoots, HoldFilesBelowThemAlone) {
-  const fs::path folder = fs::path(testing::TempDir()) / "blem_sim_roots", allowed = folder / "allowed";
+  const TemporaryFolder temporary;
+  const fs::path folder = temporary.path(), allowed = folder / "allowed";
   fs::create_directories(allowed / "deep");
   fs::create_directories(folder / "allowed_not");
   std::ofstream(folder / "secret.off") << "x";
-  fs::remove(allowed / "link.off");
   fs::create_symlink(folder / "secret.off", allowed / "link.off");
-  for (const char* link : {"nowhere.bag", "first.bag"}) fs::remove(allowed / link);
   fs::create_symlink(folder / "not_there_yet.bag", allowed / "nowhere.bag");
   fs::create_symlink("nowhere.bag", allowed / "first.bag");
   const FileRoots roots({allowed.string() + "/"});

@@ -1,6 +1,5 @@
 """A world for the tests of the Python module: an arm, a cube and the ground."""
 import pathlib
-import shutil
 import sys
 import tempfile
 import unittest
@@ -17,8 +16,9 @@ class SimulatorCase(unittest.TestCase):
     """A folder with the files of the world in it."""
 
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp())
-        self.addCleanup(shutil.rmtree, str(self.folder))
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
         for name, text in (("world.yaml", WORLD), ("arm.urdf", arm_urdf()), ("cube.off", CUBE_OFF)):
             (self.folder / name).write_text(text)
 

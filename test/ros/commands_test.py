@@ -3,7 +3,6 @@
 import math
 import os
 import subprocess
-import tempfile
 import time
 import unittest
 
@@ -15,7 +14,7 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 import sim_client
-from sim_client import Recorder, wait_until
+from sim_client import Recorder, temporary_folder, wait_until
 
 SCRIPT = os.path.join(rospkg.RosPack().get_path("blem_sim"), "scripts", "ros", "play_trajectory")
 
@@ -113,7 +112,7 @@ class CommandsTest(unittest.TestCase):
 
     def play(self, content, *flags):
         """Exit code and errors of play_trajectory, while steps are made."""
-        file = os.path.join(tempfile.mkdtemp(dir="/tmp"), "motion.csv")
+        file = os.path.join(temporary_folder(self), "motion.csv")
         with open(file, "wb") as stream:
             stream.write(content)
         command = [SCRIPT, file] + list(flags)
@@ -128,7 +127,7 @@ class CommandsTest(unittest.TestCase):
         self.assertAlmostEqual(self.position_after(1000), -0.4, delta=0.03)
 
     def test_script_that_loops_goes_on_after_a_reset(self):
-        file = os.path.join(tempfile.mkdtemp(dir="/tmp"), "motion.csv")
+        file = os.path.join(temporary_folder(self), "motion.csv")
         with open(file, "w") as stream:
             stream.write("time,shoulder\n0,0\n5,0.3\n")
         process = subprocess.Popen([SCRIPT, file, "--loop"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)

@@ -1,4 +1,5 @@
 """What the rostests share: a recorder of topics, and the simulation's services."""
+import tempfile
 import threading
 import time
 from xmlrpc.client import ServerProxy
@@ -92,6 +93,13 @@ def wait_until(condition, text, detail=lambda: ""):
         if time.time() > deadline:
             raise AssertionError("waited in vain for " + (text % detail() if "%s" in text else text))
         time.sleep(0.01)
+
+
+def temporary_folder(test):
+    """Path of a folder that goes with the test, below /tmp as the file_roots of the tests' nodes."""
+    folder = tempfile.TemporaryDirectory(dir="/tmp")
+    test.addCleanup(folder.cleanup)
+    return folder.name
 
 
 def service(name, service_type):

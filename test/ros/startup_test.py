@@ -24,7 +24,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import PointCloud2, PointField
 
 from blem_sim.srv import LoadEnvironment, RestoreState, SaveState, StartRecord, StopRecord
-from sim_client import Recorder, wait_until
+from sim_client import Recorder, temporary_folder, wait_until
 
 NAME = "/starting_blem_sim"
 DATA = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
@@ -161,7 +161,7 @@ class StartupTest(unittest.TestCase):
                 self.end(process, told)
 
     def test_record_is_whole_after_a_termination(self):
-        record = os.path.join(tempfile.mkdtemp(dir="/tmp"), "inputs.bag")
+        record = os.path.join(temporary_folder(self), "inputs.bag")
         self.parameters["record"] = record
         process = self.start(self.parameters)
         self.wait_until_ready(process)
@@ -170,7 +170,7 @@ class StartupTest(unittest.TestCase):
             self.assertGreater(bag.get_message_count(), 0)
 
     def test_records_begin_after_one_that_its_disk_did_not_take(self):
-        folder = tempfile.mkdtemp(dir="/tmp")
+        folder = temporary_folder(self)
         self.parameters.update(file_roots=[folder], real_time_factor=0)
         process = self.start(self.parameters, preexec_fn=fill_disk)
         self.wait_until_ready(process)
@@ -197,7 +197,7 @@ class StartupTest(unittest.TestCase):
         return int(re.search("no end after step ([0-9]+), and is the same up to there", replay()).group(1))
 
     def test_record_of_a_node_that_was_killed_is_whole_up_to_its_end(self):
-        record = os.path.join(tempfile.mkdtemp(dir="/tmp"), "inputs.bag")
+        record = os.path.join(temporary_folder(self), "inputs.bag")
         self.parameters["record"] = record
         process = self.start(self.parameters)
         self.wait_until_ready(process)
@@ -211,7 +211,7 @@ class StartupTest(unittest.TestCase):
         self.assertIn("cut short", done.stderr)
 
     def test_record_ends_with_its_terminal(self):
-        folder = tempfile.mkdtemp(dir="/tmp")
+        folder = temporary_folder(self)
         self.parameters["file_roots"] = [folder]
         process = self.start(self.parameters)
         self.wait_until_ready(process)
@@ -225,7 +225,7 @@ class StartupTest(unittest.TestCase):
 
     def test_checkpoint_stays_after_a_termination(self):
         self.parameters["checkpoint_period"] = 0.05
-        self.parameters["checkpoint_file"] = os.path.join(tempfile.mkdtemp(dir="/tmp"), "kept.state")
+        self.parameters["checkpoint_file"] = os.path.join(temporary_folder(self), "kept.state")
         for told, stays in ((signal.SIGTERM, True), (signal.SIGINT, False)):
             process = self.start(self.parameters)
             self.wait_until_ready(process)

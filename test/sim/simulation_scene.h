@@ -16,12 +16,15 @@ namespace blem_sim::sim {
 
 constexpr double G = 9.81;  // [m/s^2], the default configuration's
 
-/** Folder of one process, which ends with it: programs that run side by side write other files of the same names. */
+inline std::filesystem::path sceneFolderOf(pid_t process) {
+  return std::filesystem::path(testing::TempDir()) / ("blem_sim_scene." + std::to_string(process));
+}
+
+/** Folder of one process, which ends with it: programs that run side by side write other files of the same names.
+    That of a child that ends by _exit or a signal is its parent's to remove. */
 class SceneFolder {
  public:
-  SceneFolder() : path(std::filesystem::path(testing::TempDir()) / ("blem_sim_scene." + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path);
-  }
+  SceneFolder() : path(sceneFolderOf(getpid())) { std::filesystem::create_directories(path); }
   SceneFolder(const SceneFolder&) = delete;
   SceneFolder& operator=(const SceneFolder&) = delete;
   ~SceneFolder() {

@@ -3,7 +3,6 @@
 import math
 import os
 import sys
-import tempfile
 import unittest
 
 import rospy
@@ -15,7 +14,7 @@ from blem_sim.msg import LinkState, ModelState, ODEJointProperties
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
-from sim_client import service, wait_until
+from sim_client import service, temporary_folder, wait_until
 
 NAN = float("nan")
 GRAVITY = Vector3(0, 0, -9.81)
@@ -274,7 +273,7 @@ class GazeboServicesTest(unittest.TestCase):
         self.assertIn("fmax", answer.status_message)
 
     def test_saved_state_goes_on_with_the_same_bits(self):
-        folder = tempfile.mkdtemp()
+        folder = temporary_folder(self)
         file = os.path.join(folder, "a.state")
         hash_now = lambda: self.done("save_state", file=os.path.join(folder, "now.state")).state_hash
         sim_client.step(100)

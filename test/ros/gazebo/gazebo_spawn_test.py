@@ -5,7 +5,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import unittest
 
@@ -25,7 +24,7 @@ from blem_sim.msg import LinkStates
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
-from sim_client import Recorder, service, wait_until
+from sim_client import Recorder, service, temporary_folder, wait_until
 
 sim_client.NODE = "/gazebo"
 ACTION = "/joint_trajectory_controller/follow_joint_trajectory"
@@ -282,7 +281,7 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertNotIn("odd", models())
 
     def test_launch_file_takes_yaml_by_any_of_its_endings(self):
-        folder = tempfile.mkdtemp(dir="/tmp")
+        folder = temporary_folder(self)
         for ending in ("yaml", "yml", "YAML"):
             world = os.path.join(folder, "world." + ending)
             shutil.copy(os.path.join(DATA, "world.yaml"), world)

@@ -5,7 +5,6 @@ import os
 import random
 import resource
 import sys
-import tempfile
 import time
 import unittest
 
@@ -21,7 +20,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(HERE, "..")]
 import malformed
 import sim_client
-from sim_client import Recorder, service, wait_until
+from sim_client import Recorder, service, temporary_folder, wait_until
 
 UNMOVED = 1e-9  # [m]
 ACTION = "/joint_trajectory_controller/follow_joint_trajectory"
@@ -181,7 +180,7 @@ class HostileInputTest(unittest.TestCase):
     requests, seed = 800, 1
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp(dir="/tmp")
+        self.folder = temporary_folder(self)
         os.symlink("/etc/hostname", os.path.join(self.folder, "link.stl"))
         malformed.OUTSIDE += (os.path.join(self.folder, "link.stl"),)
         self.hostile = Hostile(self.seed, self.folder)

@@ -78,7 +78,8 @@ def everything(topics, action):
 class RecordTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp(dir="/tmp")
+        cls.temporary = tempfile.TemporaryDirectory(dir="/tmp")
+        cls.folder = cls.temporary.name
         cls.bag = os.path.join(cls.folder, "run.bag")
         topics = {"command": ("/joint_trajectory_controller/command", JointTrajectory), "points": ("/points", PointCloud2),
                   "joint_trajectory": ("/joint_trajectory", JointTrajectory), "joint_command": ("/joint_command", JointState),
@@ -97,7 +98,7 @@ class RecordTest(unittest.TestCase):
 
     @classmethod
     def tearDownClass(cls):
-        shutil.rmtree(cls.folder)
+        cls.temporary.cleanup()
 
     def messages(self, topic):
         with rosbag.Bag(self.bag) as bag:

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <map>
 
 #include "support/random/eventful_scene.h"
@@ -89,6 +90,7 @@ SceneOutcome finish(const Runner& runner, bool hangs) {
   close(runner.pipe);
   int status = 0;
   waitpid(runner.process, &status, 0);
+  std::filesystem::remove_all(sim::sceneFolderOf(runner.process));
   if (!told) {
     outcome = SceneOutcome();
     outcome.seed = runner.seed;
