@@ -289,6 +289,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   result->motor_efforts.assign(scene->joints().size(), 0);
   result->axis_efforts.assign(scene->joints().size(), 0);
   result->joint_wrenches.assign(scene->joints().size(), Wrench());
+  result->root_wrenches.assign(input.root_drives ? input.root_drives->size() : 0, Wrench());
   result->free_work.assign(scene->joints().size(), 0);
   result->free_efforts.assign(scene->joints().size(), 0);
   result->free_speeds.assign(scene->joints().size(), 0);

@@ -32,6 +32,8 @@ bool isSound(const Scene& scene, const StepInput& input, const std::vector<BodyB
     if (!isSound(c)) return false;
   for (const JointDrive& d : input.drives)
     if (!isSound(d)) return false;
+  for (const RootDrive& d : *input.root_drives)
+    if (!isSound(d)) return false;
   for (const BodySlot& slot : scene.bodies())
     if (!slot.pending.force.allFinite() || !slot.pending.torque.allFinite()) return false;
   return scene.gravity().allFinite() && finite(bodies);
@@ -146,10 +148,10 @@ void World::applyWrench(int body, const Wrench& wrench, const Vector3& point) {
 }
 
 const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives,
-                               double of_step) {
+                               double of_step, const std::vector<RootDrive>& root_drives) {
   assert(static_cast<int>(drives.size()) == jointCount());
   Impl& impl = *impl_;
-  const StepInput input{dt, contacts, drives, of_step};
+  const StepInput input{dt, contacts, drives, of_step, &root_drives};
   impl.joints_known = false;
   impl.scene.bits(&impl.start);
   impl.result.finite = impl.advance(input);
@@ -162,6 +164,7 @@ const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& 
     impl.result.joint_wrenches.assign(drives.size(), Wrench());
     impl.result.motor_efforts.assign(drives.size(), 0);
     impl.result.axis_efforts.assign(drives.size(), 0);
+    impl.result.root_wrenches.assign(root_drives.size(), Wrench());
     impl.result.residual = impl.result.creep = 0;
     impl.result.iterations = impl.result.lcp_errors = 0;
   }

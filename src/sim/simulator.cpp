@@ -106,6 +106,15 @@ void Simulator::driveJoints(int robot, const JointVelocityCommand& command) {
   impl_->driveJoints(robot, command);
   impl_->tell("driveJoints", robot, command);
 }
+void Simulator::driveBase(int robot, int link, const BaseVelocityCommand& command) {
+  impl_->driveBase(robot, link, command);
+  impl_->tell("driveBase", robot, link, command);
+}
+void Simulator::releaseBase(int robot) {
+  impl_->releaseBase(robot);
+  impl_->tell("releaseBase", robot);
+}
+const BaseVelocityCommand* Simulator::baseCommand(int robot) const { return impl_->base_drives_.commandOf(robots().at(robot).bodies[0]); }
 void Simulator::checkJointCommand(int robot, const JointCommandMessage& command) const { impl_->checkJointCommand(robot, command); }
 JointSample Simulator::desiredState(int robot, int joint) const { return desiredState(robot, joint, time()); }
 JointSample Simulator::desiredState(int robot, int joint, double time) const {

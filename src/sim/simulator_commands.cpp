@@ -102,6 +102,24 @@ void Simulator::Impl::driveJoints(int robot, const JointVelocityCommand& command
   }
 }
 
+void Simulator::Impl::driveBase(int robot, int link, const BaseVelocityCommand& command) {
+  const RobotInfo& info = world_.robots.at(robot);
+  const auto refuse = [&](const std::string& why) { throw InputError(fmt::format("robot '{}': base velocity: {}", info.name, why)); };
+  if (info.fixed_base) refuse("its base is fixed; leave fixed_base out");
+  if (config_.solver.stepper != "articulated") refuse(config_.solver.stepper + " drives no base; set solver.stepper to articulated");
+  for (const double number : {command.x, command.y, command.turn, command.max_force, command.max_torque})
+    if (!isCommand(number)) refuse(fmt::format("has {}; numbers must be finite, and not beyond {:g}", number, LARGEST_COMMAND));
+  if (command.max_force < 0 || command.max_torque < 0) refuse("bounds are below 0; give 0 or more");
+  const std::vector<model::LinkPlacement>& placed = info.lumped->link_placement;
+  if (link < 0 || link >= static_cast<int>(placed.size()))
+    refuse(fmt::format("it has no link {}; its links are 0 to {}", link, placed.size() - 1));
+  const Pose X_BL = placed[link].body == 0 ? placed[link].X_BL : Pose::Identity();
+  const CarriedFrame frame{X_BL.translation(), X_BL.linear().col(0)};
+  base_drives_.set(info.bodies[0], frame, withBounds(command, world_.world, world_.models[info.model].bodies));
+}
+
+void Simulator::Impl::releaseBase(int robot) { base_drives_.clearBody(world_.robots.at(robot).bodies[0]); }
+
 double Simulator::Impl::nearestTurn(int joint, double position) const {
   if (!world_.motors[joint].settings().continuous) return position;
   return position + turnsTo(world_.world.jointState(joint).position, position);

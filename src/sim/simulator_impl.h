@@ -17,6 +17,7 @@
 #include "clouds/inner_points.h"
 #include "clouds/leaving_triangles.h"
 #include "commands/applied_loads.h"
+#include "commands/base_drives.h"
 #include "contacts/constraints/constraint_maker.h"
 #include "contacts/constraints/early_pushes.h"
 #include "contacts/constraints/made_solve.h"
@@ -108,6 +109,8 @@ struct Simulator::Impl {
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
   void driveJoints(int robot, const JointVelocityCommand& command);
+  void driveBase(int robot, int link, const BaseVelocityCommand& command);
+  void releaseBase(int robot);
   void checkJointCommand(int robot, const JointCommandMessage& command) const;
   JointSample desiredState(int world_joint, double time) const;
   /** A position as the joint takes it: a joint that turns without end takes the turn nearest to its present position. */
@@ -116,7 +119,7 @@ struct Simulator::Impl {
   // simulator_state.cpp
   /** Content of the next save, without a header. */
   SimulationState content() const;
-  /** Loads, a time step that was set, tares, steps in even parts. */
+  /** Loads, a time step that was set, tares, steps in even parts, drives of bases. */
   void saveRarities(geometry::StateWriter* writer) const;
   SimulationState save() const;
   /** A state that is refused changes nothing. */
@@ -255,6 +258,7 @@ struct Simulator::Impl {
   std::map<std::string, LiveGround> live_;  ///< by environment
   SensorSet sensors_;
   AppliedLoads loads_;
+  BaseDrives base_drives_;
   std::vector<BodyLoad> loads_now_;
   Epoch epoch_;
   ControllerMemories memories_;

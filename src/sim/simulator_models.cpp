@@ -76,8 +76,9 @@ void Simulator::Impl::spawn(RobotConfig robot) {
     throw InputError(fmt::format("{}: there are {} models, which is the most; delete some", robot.name, MOST_MODELS));
   const std::shared_ptr<const model::RobotModel> model = builder_.describe(robot);
   robot.fixed_base = robot.fixed_base || model->links[model->root].name == WORLD_LINK;
-  const bool one_free_body = !robot.fixed_base && withGazeboBlocks(robot, *model).config.sensors.empty() &&
-                             model::lumpFixedJoints(*model, {}, false).bodies.size() == 1;
+  const RobotConfig whole = withGazeboBlocks(robot, *model).config;
+  const bool one_free_body =
+      !robot.fixed_base && whole.sensors.empty() && whole.drives.empty() && model::lumpFixedJoints(*model, {}, false).bodies.size() == 1;
   if (one_free_body)
     builder_.addObject(objectOf(robot), &world_);
   else
@@ -97,7 +98,10 @@ void Simulator::Impl::removeModel(const std::string& name) {
     sensors_.removeOf(world_, world_.robotOf(model));
   }
   const std::vector<int> bodies = world_.models[model].bodies;
-  for (const int body : bodies) loads_.clearBody(body);
+  for (const int body : bodies) {
+    loads_.clearBody(body);
+    base_drives_.clearBody(body);
+  }
   for (int joint = 0; joint < world_.world.jointCount(); ++joint) {
     const dynamics::JointSpec& spec = world_.world.jointSpec(joint);
     if (std::find(bodies.begin(), bodies.end(), spec.child) != bodies.end()) loads_.clearJoint(joint);

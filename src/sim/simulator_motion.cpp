@@ -184,6 +184,7 @@ void Simulator::Impl::restart(const ModelInfo& model, int robot) {
   for (const int body : model.bodies) {
     world_.world.setBodyState(body, world_.start_states[body]);
     loads_.clearBody(body);
+    base_drives_.clearBody(body);
   }
   if (robot < 0) return;
   for (const int joint : world_.robots[robot].world_joints) {

@@ -37,6 +37,7 @@ void Simulator::Impl::recordEnergy(const MadeSolve& made) {
 }
 
 void Simulator::Impl::recordMotors(const MadeSolve& made) {
+  if (base_drives_.areSaturated(made.result.root_wrenches)) report_.status |= EFFORT_SATURATED;
   const std::vector<double>& free_speeds = made.result.free_speeds;
   for (std::size_t j = 0; j < made.drives.size(); ++j) {
     const dynamics::JointState state = world_.world.jointState(static_cast<int>(j));

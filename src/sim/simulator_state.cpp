@@ -35,10 +35,10 @@ Epoch epochFrom(std::uint64_t steps, geometry::StateReader* reader) {
   return {time, static_cast<std::uint64_t>(step)};
 }
 
-/** Ticks of a substep: half of those of a step, or half of that, and so on. */
+/** Ticks of a substep: those of a step, or half of that, and so on. */
 int mostTicksFrom(geometry::StateReader* reader) {
   const double ticks = reader->number();
-  for (int most = Substeps::MAX_SUBSTEPS / 2; most > 0; most /= 2)
+  for (int most = Substeps::MAX_SUBSTEPS; most > 0; most /= 2)
     if (ticks == most) return most;
   reader->refuseContent("a step is divided into no even parts");
 }
@@ -58,6 +58,7 @@ struct Simulator::Impl::StateParts {
   LayerStops stops;
   Epoch epoch;
   AppliedLoads loads;
+  BaseDrives base_drives;
   int most_ticks = Substeps::MAX_SUBSTEPS;
 };
 
@@ -87,12 +88,14 @@ SimulationState Simulator::Impl::content() const {
 
 // Most simulations have none of these, and their states none of these numbers. Whatever is rare brings what stands before it.
 void Simulator::Impl::saveRarities(geometry::StateWriter* writer) const {
-  const bool divided = most_ticks_ != Substeps::MAX_SUBSTEPS, tared = sensors_.isTared() || divided;
+  const bool driven = !base_drives_.empty(), divided = most_ticks_ != Substeps::MAX_SUBSTEPS || driven,
+             tared = sensors_.isTared() || divided;
   if (loads_.empty() && epoch_.step == 0 && !tared) return;
   writer->numbers({epoch_.time, static_cast<double>(epoch_.step)});
   loads_.save(writer);
   if (tared) sensors_.saveTares(writer);
   if (divided) writer->number(most_ticks_);
+  if (driven) base_drives_.save(writer);
 }
 
 Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& state) const {
@@ -100,7 +103,7 @@ Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& stat
   geometry::StateReader reader(state);
   if (state.step > MOST_STEPS) reader.refuseContent("there are more steps than time can count");
   reader.requireFinite();
-  StateParts parts{reader.flag(), energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}};
+  StateParts parts{reader.flag(), energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   parts.energy_balance.restore(world_.world.bodyCount(), &reader);
   for (std::size_t joint = 0; joint < parts.motors.size(); ++joint)
     if (world_.world.hasJoint(static_cast<int>(joint))) parts.motors[joint].restore(&reader);
@@ -116,6 +119,7 @@ Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& stat
   }
   if (reader.numbersLeft() > 0) parts.sensors.restoreTares(&reader);
   if (reader.numbersLeft() > 0) parts.most_ticks = mostTicksFrom(&reader);
+  if (reader.numbersLeft() > 0) parts.base_drives.restore(world_.world.bodyCount(), &reader);
   reader.finish();
   return parts;
 }
@@ -145,6 +149,7 @@ void Simulator::Impl::restore(const SimulationState& state) {
   at_hand_.crossings = std::move(parts.crossings);
   layer_watch_ = std::move(parts.layer_watch);
   loads_ = std::move(parts.loads);
+  base_drives_ = std::move(parts.base_drives);
   epoch_ = parts.epoch;
   most_ticks_ = parts.most_ticks;
   memories_ = state.memories;

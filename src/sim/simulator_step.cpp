@@ -133,7 +133,10 @@ std::optional<MadeSolve> Simulator::Impl::solve(const SolverContacts& contacts, 
   const std::vector<BodyLoad>& loads = loadsNow();
   for (const BodyLoad& load : loads) world_.world.applyWrench(load.body, load.wrench, bodies_[load.body].X_WB * load.p_B);
   energy_balance_.setLoads(loads);
-  const dynamics::SolveResult& result = world_.world.step(substepLength(), contacts.constraints, drives, config_.time_step);
+  const std::vector<dynamics::RootDrive>& bases = base_drives_.of(world_.world, bodies_, substepLength());
+  const dynamics::SolveResult& result = world_.world.step(substepLength(), contacts.constraints, drives, config_.time_step, bases);
+  for (std::size_t i = 0; i < bases.size(); ++i)
+    energy_balance_.addLoad({bases[i].body, result.root_wrenches[i], world_.world.bodySpec(bases[i].body).inertial.com});
   if (result.finite) world_.bodyStates(&bodies_);
   if (result.finite && bodiesAreFinite())
     return MadeSolve{at_hand_, contacts, drives, result, bodies_before_substep_, bodies_, substepLength()};

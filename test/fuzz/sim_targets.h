@@ -81,7 +81,7 @@ inline void fuzzInput(const std::uint8_t* data, std::size_t size) {
       "commandTrajectory", "commandJoints",     "holdJoint",       "loadEnvironment", "unloadEnvironment", "updateCloud", "removeModel",
       "moveModel",         "setJointPositions", "resetModel",      "applyLoad",       "applyEffort",       "clearLoads",  "clearEfforts",
       "setPhysics",        "setLinkInertial",   "setJointDamping", "setJointLimits",  "resetWorld",        "restore",     "spawn",
-      "setMotorGains",     "setFriction",       "driveJoints",     "setLinkGravity"};
+      "setMotorGains",     "setFriction",       "driveJoints",     "setLinkGravity",  "driveBase",         "releaseBase"};
   if (size < 2) return;
   sim::SimulatorInput input;
   input.call = CALLS[data[0] % (sizeof CALLS / sizeof *CALLS)];

@@ -68,10 +68,10 @@ class World {
   /**
    * Advances by dt [s] > 0. With numbers that are none or out of range the result is not finite.
    * @param drives one per joint slot @param of_step [s] step of which dt is a part, by half of which velocities stand before their poses in
-   * flight, for `articulated`; less than dt: dt
+   * flight, for `articulated`; less than dt: dt @param root_drives of this step, beside them
    */
   const SolveResult& step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives,
-                          double of_step = 0);
+                          double of_step = 0, const std::vector<RootDrive>& root_drives = {});
 
   double kineticEnergy() const;    ///< [J]
   double potentialEnergy() const;  ///< [J] against gravity, zero at the origin

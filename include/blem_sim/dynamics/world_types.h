@@ -70,6 +70,17 @@ struct JointDrive {
   double givenEffort() const { return effort + outside_effort; }
 };
 
+/**
+ * Drive of a free root over the ground during one step, against nothing: the velocity of its centre of mass along x and y and its spin
+ * about z, world axes, come to targets at the end of the step, as far as force and torque reach. For `articulated`.
+ */
+struct RootDrive {
+  int body = 0;                                        ///< that no joint moves, nor another of these drives
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< [m/s]
+  double spin = 0;                                     ///< [rad/s]
+  double max_force = 0, max_torque = 0;                ///< [N] along x and along y, [N m]
+};
+
 /** A contact that goes on under another id (ContactConstraint::id). */
 struct ContactRename {
   std::uint64_t from, to;
@@ -121,6 +132,7 @@ struct SolveResult {
   std::vector<Wrench> joint_wrenches;   ///< from the parent on the child, world axes, about the joint frame's origin at the start of
                                         ///< the step; from motion (Newton-Euler over the step), not from a residual
   std::vector<double> motor_efforts;    ///< [N m or N] of the motors alone, along the axes
+  std::vector<Wrench> root_wrenches;    ///< of root drives, mean over the step, about the body's centre of mass; empty: none were given
   std::vector<double> axis_efforts;     ///< [N m or N] of motors, outside efforts, friction and mimic joints' pull along the axes
   std::vector<double> free_efforts;     ///< [N m or N] what joints took along their axes to keep their velocities on a free way, which
                                         ///< axis_efforts of the next step hold, less what those of this one hold of the last

@@ -20,10 +20,12 @@ struct JointConstraint {
   double goal = 0;        ///< at the end
 };
 
-enum class ControllerKind { TRAJECTORY, GRIPPER, DRIVE, STEERED_DRIVE };
+enum class ControllerKind { TRAJECTORY, GRIPPER, DRIVE, STEERED_DRIVE, PLANAR_DRIVE };
 
 /** True for what takes twists and gives odometry. */
-inline bool isDrive(ControllerKind kind) { return kind == ControllerKind::DRIVE || kind == ControllerKind::STEERED_DRIVE; }
+inline bool isDrive(ControllerKind kind) {
+  return kind == ControllerKind::DRIVE || kind == ControllerKind::STEERED_DRIVE || kind == ControllerKind::PLANAR_DRIVE;
+}
 
 /** Limits of a part of a drive's twist, of both signs; infinite: none. Units as that part's: [m] or [rad]. */
 struct SpeedLimits {
@@ -47,7 +49,8 @@ struct SteeringConfig {
   bool takes_angles = false;
 };
 
-/** Settings of a drive: a robot on wheels that turns by letting the left ones roll otherwise than the right ones, or by steering. */
+/** Settings of a drive: a robot on wheels that turns by letting the left ones roll otherwise than the right ones, or by steering; or one
+ * that is pushed over the ground from outside, without wheels. */
 struct DriveConfig {
   enum class Odometry { ENCODER, WORLD };
   std::vector<std::string> left, right;  ///< joints of the wheels of a drive that does not steer
@@ -56,6 +59,8 @@ struct DriveConfig {
   double wheel_radius = 0;               ///< [m] at which they roll; 0: that of the first left or rear wheel's cylinder or sphere
   double separation_multiplier = 1, radius_multiplier = 1;  ///< factors of calibration
   SpeedLimits linear, angular;                              ///< of the twists that are driven
+  SpeedLimits lateral;                                      ///< of their part to the left, of a drive without wheels
+  double max_force = 0, max_torque = 0;                     ///< of a drive without wheels, as BaseVelocityCommand has them
   double wheel_acceleration = 0;                            ///< [m/s^2] of each wheel's rim; 0: any
   double wheel_torque = 0;                                  ///< [N m] of each wheel's motor at most, beside its own limit; 0: that alone
   double cmd_vel_timeout = 0.5;                             ///< [s] simulated after the last command, when the wheels stop; 0: never

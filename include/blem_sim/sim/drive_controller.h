@@ -17,6 +17,7 @@ class Undercarriage;
 struct DriveTwist {
   double linear = 0;   ///< [m/s] ahead
   double angular = 0;  ///< [rad/s] to the left; as a command to a drive that takes angles, [rad] of its steering
+  double lateral = 0;  ///< [m/s] to the left, for a drive without wheels; others leave it out
 };
 
 /** Pose and velocity of the base. */
@@ -29,6 +30,7 @@ struct DriveOdometry {
 /**
  * Turns twists into velocities of wheels, which their motors keep as exactly as their efforts allow, and into angles of the joints that
  * steer, which their motors hold by their gains. Twists change within their limits, each wheel's rim at wheel_acceleration at most.
+ * A drive without wheels has its base pushed from outside instead, while it runs (Simulator::driveBase).
  * Commands come between two steps.
  */
 class DriveController {
@@ -40,10 +42,12 @@ class DriveController {
   int robot() const;                  ///< @throws InputError: it was removed
   int base() const { return base_; }  ///< link of the robot's description
   bool running() const { return running_; }
+  /** What no other running controller may have: joints, or the root link of a robot that is pushed. */
+  std::vector<std::string> claims() const;
 
   /** Stops the wheels; commands are taken from now on, and the encoder's odometry begins here. What takes angles steers straight. */
   void start();
-  /** The wheels stop; steering stays as it is. */
+  /** The wheels stop; steering stays as it is. Nothing pushes the base any more. */
   void stop();
   /** @throws InputError: stopped, no finite number, wheels would turn faster than can be commanded; nothing is changed then */
   void command(const DriveTwist& twist);
@@ -56,6 +60,7 @@ class DriveController {
   DriveOdometry odometry() const;
 
  private:
+  bool isPlanar() const { return config_.kind == ControllerKind::PLANAR_DRIVE; }
   const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
   struct Memory;
   /** A drive that stands still since the present step. */
@@ -81,8 +86,10 @@ class DriveController {
   std::vector<double> velocities(const Memory& memory) const;
   /** Turns the wheels, from the next step on. */
   void drive(const std::vector<double>& velocities);
+  /** Pushes the base, from the next step on. */
+  void push(const Memory& memory);
   void steer(double angle);
-  /** Whether motors of wheels have a velocity to keep. */
+  /** Whether motors of wheels, or the base, have a velocity to keep. */
   bool isCommanded() const;
   bool isTakenOver() const;
   std::vector<dynamics::JointState> jointStates() const;

@@ -56,6 +56,14 @@ class Simulator {
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
   void driveJoints(int robot, const JointVelocityCommand& command);
+  /**
+   * Pushes a robot from outside so that a link over the ground, or the root link if a joint moves it, keeps a velocity in all steps to
+   * come.
+   * @throws InputError: a fixed base, a stepper that knows no such drive, numbers that are none or too large
+   */
+  void driveBase(int robot, int link, const BaseVelocityCommand& command);
+  void releaseBase(int robot);
+  const BaseVelocityCommand* baseCommand(int robot) const;  ///< with the bounds that hold; null: nothing drives the base
   /** Changes nothing. @throws InputError as commandJoints would */
   void checkJointCommand(int robot, const JointCommandMessage& command) const;
   JointSample desiredState(int robot, int joint) const;  ///< command of the motor now; joint = index into joint_names

@@ -93,6 +93,14 @@ struct JointVelocityCommand {
   double max_effort = 0;           ///< [N m or N] beside the motors' limits; 0: these alone
 };
 
+/** Velocity over the ground that a free base keeps, pushed from outside. */
+struct BaseVelocityCommand {
+  double x = 0, y = 0;    ///< [m/s] ahead and to the left, of a link's frame
+  double turn = 0;        ///< [rad/s] to the left
+  double max_force = 0;   ///< [N] along each of the world's x and y; 0: twice the robot's weight
+  double max_torque = 0;  ///< [N m]; 0: max_force at twice the radius of gyration
+};
+
 /** A link, or what stands for one: an object's body, an environment as a whole. */
 struct LinkPart {
   std::string name;  ///< "model::link"

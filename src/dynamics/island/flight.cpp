@@ -37,7 +37,7 @@ void addVelocity(const Forest& forest, int tree, const Vector3& velocity, Forest
 void findLeads(const TermSource& s, const std::vector<int>& trees, ForestMotion* motion) {
   for (const int tree : trees) {
     const ForestTree& t = s.forest.trees()[tree];
-    if (!t.free || isTied(s.forest, tree)) continue;
+    if (!t.free || isTied(s.forest, tree) || rootDriveOf(s.input, s.forest.nodes()[t.first_node].body) >= 0) continue;
     computeApplied(s.forest, s.scene, tree, motion);
     const double mass = motion->composite[t.first_node].mass;
     motion->lead[tree].velocity = lag(s.input.of_step, s.input.dt) / mass * motion->applied.segment<3>(t.first_dof + 3);

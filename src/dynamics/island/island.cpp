@@ -9,6 +9,7 @@ void makeTerms(const TermSource& source, Island* island) {
   terms.clear();
   model.clearTies();
   for (const int tree : model.trees) {
+    if (forest.trees()[tree].free) addRootTerms(source, forest.trees()[tree].first_node, &terms.joints);
     for (int i = forest.trees()[tree].first_node; i < forest.trees()[tree].node_end; ++i)
       if (forest.nodes()[i].dofs == 1) terms.joints.push_back(jointTerm(source, i));
   }

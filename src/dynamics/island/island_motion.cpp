@@ -203,7 +203,8 @@ void followAlone(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* spac
 }
 
 void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space) {
-  for (const JointTerm& j : terms.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort() + j.viscousLead();
+  for (const JointTerm& j : terms.joints)
+    if (j.joint >= 0) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort() + j.viscousLead();
 }
 
 double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space) {
@@ -234,7 +235,8 @@ bool followFast(const SolvedIsland& island, const ForestMotion& motion, const So
   const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
   if (std::none_of(trees.begin(), trees.end(), turns)) return true;
   bool followed = true;
-  for (const JointTerm& j : island.found.joints) setHold(j, space.velocity[j.dof], island.forest, motion, way);
+  for (const JointTerm& j : island.found.joints)
+    if (j.joint >= 0) setHold(j, space.velocity[j.dof], island.forest, motion, way);
   for (const int tree : trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;

@@ -19,6 +19,12 @@ void readJoint(const JointTerm& j, double v, const StepInput& input, SolveResult
   result->axis_efforts[j.joint] = drive.givenEffort() + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v + j.viscousLead()) / dt;
 }
 
+void addRootWrench(const JointTerm& j, double v, const Forest& forest, double dt, SolveResult* result) {
+  Wrench& wrench = result->root_wrenches[j.root_drive];
+  const int axis = j.dof - forest.nodes()[forest.nodeOfDof(j.dof)].first_dof;
+  (axis < 3 ? wrench.torque[axis] : wrench.force[axis - 3]) = j.motorImpulse(v) / dt;
+}
+
 // A mimic joint feels its master's pull, the master its reaction.
 void addMimicPulls(const Forest& forest, const Island& island, double dt, std::vector<double>* axis_efforts) {
   const std::vector<double>& impulses = island.solver.found().mimic_impulses;
@@ -49,7 +55,12 @@ void readJoints(const StepInput& input, const Island& island, SolveResult* resul
   const IslandTerms& terms = island.solver.found().terms;
   const Eigen::VectorXd& velocity = island.solver.atHand().space->velocity;
   const auto read = [&](const JointTerm& j, double v) { readJoint(j, v, input, result, &(*records)[j.joint]); };
-  for (const JointTerm& j : terms.joints) read(j, velocity[j.dof]);
+  for (const JointTerm& j : terms.joints) {
+    if (j.joint >= 0)
+      read(j, velocity[j.dof]);
+    else
+      addRootWrench(j, velocity[j.dof], forest, input.dt, result);
+  }
   for (std::size_t l = 0; l < island.loops.size(); ++l) {
     const LoopTerm& loop = terms.loops[l];
     (*records)[forest.loops()[island.loops[l]].joint].loop = loop.impulses() / input.dt;

@@ -73,6 +73,7 @@ bool isDriven(const Forest& forest, int tree, const StepInput& input) {
     return motor || d.dry_friction > 0 || d.viscous_friction > 0;
   };
   const ForestTree& t = forest.trees()[tree];
+  if (rootDriveOf(input, forest.nodes()[t.first_node].body) >= 0) return true;
   return std::any_of(forest.nodes().begin() + t.first_node, forest.nodes().begin() + t.node_end,
                      [&](const ForestNode& n) { return n.dofs == 1 && drives(input.drives[n.joint]); });
 }

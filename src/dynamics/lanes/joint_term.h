@@ -25,7 +25,8 @@ struct JointTerm {
   static constexpr double STICKING = 1 - 1e-9;  ///< of the bound: friction that was remembered below it had stuck
 
   int dof = -1;           ///< of the forest
-  int joint = -1;         ///< of the world
+  int joint = -1;         ///< of the world; -1: the dof is a free root's
+  int root_drive = -1;    ///< of the step's input; -1: the dof is a joint's
   double motor_gain = 0;  ///< D [N m s^2/rad]: impulse D (motor_velocity - v), within +-motor_bound
   double motor_velocity = 0;
   double motor_bound = 0;

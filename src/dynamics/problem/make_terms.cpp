@@ -12,6 +12,7 @@ constexpr double HEAVIEST = 1e3;           // contacts are no softer than those 
 constexpr double NO_GAP = 1e-11;           // [m] made of rounding: gaps that contradict each other would lead bodies at rest on for ever
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double VELOCITY_END = 1e-6;      // gain at the end of a motor's velocities = inertia / this
+constexpr double ROOT_GIVES = 1e-5;        // gain of a root's drive = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
 constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
 constexpr double IMMOVABLE = 1e-12;     // [1/kg or 1/(kg m^2)]
@@ -276,6 +277,26 @@ JointTerm jointTerm(const TermSource& s, int node) {
   JointTerm term = driveTerm(s, n.joint, s.motion.position[node], massEntry(s, n.first_dof));
   term.dof = n.first_dof;
   return term;
+}
+
+void addRootTerms(const TermSource& s, int node, std::vector<JointTerm>* terms) {
+  const ForestNode& root = s.forest.nodes()[node];
+  const int index = rootDriveOf(s.input, root.body);
+  if (index < 0) return;
+  const RootDrive& drive = (*s.input.root_drives)[index];
+  const auto add = [&](int axis, double velocity, double most) {
+    JointTerm term;
+    term.dof = root.first_dof + axis;
+    term.root_drive = index;
+    term.motor_gain = massEntry(s, term.dof) / ROOT_GIVES;
+    term.motor_velocity = velocity;
+    term.motor_bound = s.input.dt * most;
+    term.velocity_gain = term.motor_gain;
+    terms->push_back(term);
+  };
+  add(RootAxis::SPIN, drive.spin, drive.max_torque);
+  add(RootAxis::X, drive.velocity.x(), drive.max_force);
+  add(RootAxis::Y, drive.velocity.y(), drive.max_force);
 }
 
 LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {

@@ -24,6 +24,9 @@ struct TermSource {
 /** Motor, friction and limits of a node's joint. Precondition: the node has one dof. */
 JointTerm jointTerm(const TermSource& source, int node);
 
+/** Adds the terms of the drive of a free root, if the step has one. @param node that root */
+void addRootTerms(const TermSource& source, int node, std::vector<JointTerm>* terms);
+
 /** @param index of the loop in the forest; pair: child and parent */
 LoopTerm loopTerm(const TermSource& source, int index, BodyPair* pair);
 

@@ -25,6 +25,10 @@ bool isSound(const JointDrive& d) {
          finiteAndNotNegative(d.viscous_friction);
 }
 
+bool isSound(const RootDrive& d) {
+  return d.velocity.allFinite() && std::isfinite(d.spin) && finiteAndNotNegative(d.max_force) && finiteAndNotNegative(d.max_torque);
+}
+
 void checkJointNumbers(const JointSpec& joint, double position) {
   const std::string where = "joint '" + joint.name + "': ";
   if (!joint.X_PJ.matrix().allFinite()) throw InputError(where + "its frame is not finite; correct its origin");

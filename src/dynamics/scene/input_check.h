@@ -9,6 +9,7 @@ namespace blem_sim::dynamics {
 bool isSound(const ContactConstraint& contact);
 /** Whether the drive is finite, and no gain, friction or bound below 0. */
 bool isSound(const JointDrive& drive);
+bool isSound(const RootDrive& drive);
 /** @throws InputError that names the field and the cure */
 void checkJointNumbers(const JointSpec& joint, double position);
 

@@ -13,9 +13,23 @@ namespace blem_sim::dynamics {
 struct StepInput {
   double dt;  ///< [s]
   const std::vector<ContactConstraint>& contacts;
-  const std::vector<JointDrive>& drives;  ///< one per joint slot
-  double of_step = 0;                     ///< [s] step of which dt is a part, if it is longer
+  const std::vector<JointDrive>& drives;                ///< one per joint slot
+  double of_step = 0;                                   ///< [s] step of which dt is a part, if it is longer
+  const std::vector<RootDrive>* root_drives = nullptr;  ///< null: none
 };
+
+/** Places among the six velocities of a free root. */
+struct RootAxis {
+  static constexpr int SPIN = 2, X = 3, Y = 4;
+};
+
+/** Index of a body's root drive; -1: it has none. */
+inline int rootDriveOf(const StepInput& input, int body) {
+  if (!input.root_drives) return -1;
+  for (std::size_t i = 0; i < input.root_drives->size(); ++i)
+    if ((*input.root_drives)[i].body == body) return static_cast<int>(i);
+  return -1;
+}
 
 /**
  * The scene is the one store of bodies and joints: a stepper reads poses, velocities and pending wrenches from it and writes poses and

@@ -40,7 +40,7 @@ DriveServer::DriveServer(ros::NodeHandle robot_node, sim::DriveController contro
   const std::string topic = checked(controller_.config(), "cmd_vel_topic", commandTopic(controller_.config()));
   commands_ =
       subscribeCounted<geometry_msgs::Twist>(robot_node, topic.c_str(), "command refused", loop->refusals(), [this](const auto& message) {
-        controller_.command({message.linear.x, message.angular.z});
+        controller_.command({message.linear.x, message.angular.z, message.linear.y});
       });
 }
 

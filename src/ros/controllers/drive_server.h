@@ -28,7 +28,7 @@ class DriveServer : public ControllerServer {
   DriveServer(ros::NodeHandle robot_node, sim::DriveController controller, SimulationLoop* loop);
   ~DriveServer() override { leaveFrame(); }
 
-  std::vector<std::string> joints() const override { return controller_.config().joints; }
+  std::vector<std::string> joints() const override { return controller_.claims(); }
   void start() override;
   void stop() override;
   void step(double time) override;

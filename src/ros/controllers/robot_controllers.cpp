@@ -34,6 +34,7 @@ const std::vector<TypeRow> TYPE_TABLE = {
     {"effort_controllers/GripperActionController", "hardware_interface::EffortJointInterface", sim::ControllerKind::GRIPPER},
     {"diff_drive_controller/DiffDriveController", "hardware_interface::VelocityJointInterface", sim::ControllerKind::DRIVE},
     {ACKERMANN, "hardware_interface::VelocityJointInterface", sim::ControllerKind::STEERED_DRIVE},
+    {"blem_sim/PlanarDrive", "", sim::ControllerKind::PLANAR_DRIVE},
     {"joint_state_controller/JointStateController", "hardware_interface::JointStateInterface", {}},
 };
 
@@ -187,7 +188,8 @@ void RobotControllers::load(const std::string& name) {
   config.kind = *row->kind;
   config.drive.steering.takes_angles = type == ACKERMANN;  // as that one does
   config = withParameters(node_, config);
-  if (config.joints.empty()) throw InputError(place + "/joints: is missing; list the controller's joints");
+  if (config.joints.empty() && config.kind != sim::ControllerKind::PLANAR_DRIVE)
+    throw InputError(place + "/joints: is missing; list the controller's joints");
   add(config, type);
 }
 

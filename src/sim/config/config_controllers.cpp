@@ -91,8 +91,8 @@ std::optional<std::vector<ControllerConfig>> readControllers(YamlReader& robot) 
   robot.forEachItem("controllers", [&](YamlReader& reader) {
     ControllerConfig config;
     config.name = readName(reader);
-    config.kind =
-        static_cast<ControllerKind>(reader.choice("type", {"joint_trajectory", "gripper", "diff_drive", "steered_drive"}).value_or(0));
+    config.kind = static_cast<ControllerKind>(
+        reader.choice("type", {"joint_trajectory", "gripper", "diff_drive", "steered_drive", "planar_drive"}).value_or(0));
     readSettings(reader, &config);
     const auto same = [&](const ControllerConfig& other) { return other.name == config.name; };
     if (std::any_of(controllers.begin(), controllers.end(), same))

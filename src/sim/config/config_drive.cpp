@@ -13,12 +13,11 @@ const std::vector<std::string> DIFFERENTIAL_KEYS = {"left_wheel", "right_wheel",
 const std::vector<std::string> STEERED_KEYS = {
     "rear_wheel",         "front_steer",        "driven_wheel",   "wheel_separation_h",      "wheel_separation_h_multiplier",
     "front_wheel_radius", "max_steering_angle", "steering_speed", "cmd_angle_instead_rotvel"};
-const std::vector<std::string> COMMON_KEYS = {"wheel_radius",
-                                              "wheel_radius_multiplier",
-                                              "linear",
+const std::vector<std::string> WHEEL_KEYS = {"wheel_radius", "wheel_radius_multiplier", "wheel_acceleration", "wheel_torque",
+                                             "odometry_source"};
+const std::vector<std::string> PLANAR_KEYS = {"max_force", "max_torque"};
+const std::vector<std::string> COMMON_KEYS = {"linear",
                                               "angular",
-                                              "wheel_acceleration",
-                                              "wheel_torque",
                                               "cmd_vel_timeout",
                                               "cmd_vel_topic",
                                               "odom_topic",
@@ -26,12 +25,11 @@ const std::vector<std::string> COMMON_KEYS = {"wheel_radius",
                                               "base_frame_id",
                                               "publish_rate",
                                               "enable_odom_tf",
-                                              "odometry_source",
                                               "pose_covariance_diagonal",
                                               "twist_covariance_diagonal"};
 
-std::vector<std::string> withCommonKeys(std::vector<std::string> keys) {
-  keys.insert(keys.end(), COMMON_KEYS.begin(), COMMON_KEYS.end());
+std::vector<std::string> joined(std::vector<std::string> keys, const std::vector<std::string>& others) {
+  keys.insert(keys.end(), others.begin(), others.end());
   return keys;
 }
 
@@ -64,8 +62,6 @@ void readDriveOdometry(YamlReader& reader, DriveConfig* drive) {
   if (drive->odom_frame.empty()) reader.refuse("odom_frame_id", "is empty; leave it out, or give it a name");
   reader.readRate("publish_rate", &drive->publish_rate);
   reader.read("enable_odom_tf", &drive->enable_odom_tf);
-  if (const auto source = reader.choice("odometry_source", {"encoder", "world"}))
-    drive->source = static_cast<DriveConfig::Odometry>(*source);
   readCovariance(reader, "pose_covariance_diagonal", &drive->pose_covariance);
   readCovariance(reader, "twist_covariance_diagonal", &drive->twist_covariance);
 }
@@ -84,14 +80,21 @@ void readLimit(YamlReader& reader, const std::string& name, double* lower, doubl
 }
 
 /** Limits of one part of twists, as diff_drive_controller has them. */
-void readTwistLimits(YamlReader& controller, const std::string& part, const std::string& axis, SpeedLimits* limits) {
-  YamlReader twist = controller.section(part);
+void readTwistLimits(YamlReader& twist, const std::string& axis, SpeedLimits* limits) {
   YamlReader reader = twist.section(axis);
   readLimit(reader, "velocity", &limits->min_velocity, &limits->max_velocity);
   readLimit(reader, "acceleration", &limits->min_acceleration, &limits->max_acceleration);
   readLimit(reader, "jerk", &limits->min_jerk, &limits->max_jerk);
   reader.finish();
-  twist.finish();
+}
+
+void readTwist(YamlReader& controller, bool sideways, DriveConfig* drive) {
+  YamlReader linear = controller.section("linear"), angular = controller.section("angular");
+  readTwistLimits(linear, "x", &drive->linear);
+  if (sideways) readTwistLimits(linear, "y", &drive->lateral);
+  readTwistLimits(angular, "z", &drive->angular);
+  linear.finish();
+  angular.finish();
 }
 
 void readWheelSides(YamlReader& reader, DriveConfig* drive) {
@@ -115,9 +118,7 @@ void readSteering(YamlReader& reader, SteeringConfig* steering) {
   reader.read("cmd_angle_instead_rotvel", &steering->takes_angles);
 }
 
-}  // namespace
-
-void readDrive(YamlReader& reader, ControllerConfig* config) {
+void readWheeledDrive(YamlReader& reader, ControllerConfig* config) {
   DriveConfig& drive = config->drive;
   if (config->kind == ControllerKind::STEERED_DRIVE) {
     readSteering(reader, &drive.steering);
@@ -129,17 +130,37 @@ void readDrive(YamlReader& reader, ControllerConfig* config) {
   }
   reader.read("wheel_radius", &drive.wheel_radius, NumberRange::positive());
   reader.read("wheel_radius_multiplier", &drive.radius_multiplier, NumberRange::positive());
-  readTwistLimits(reader, "linear", "x", &drive.linear);
-  readTwistLimits(reader, "angular", "z", &drive.angular);
   reader.read("wheel_acceleration", &drive.wheel_acceleration, NumberRange::notNegative());
   reader.read("wheel_torque", &drive.wheel_torque, NumberRange::notNegative());
+  if (const auto source = reader.choice("odometry_source", {"encoder", "world"}))
+    drive.source = static_cast<DriveConfig::Odometry>(*source);
+}
+
+void readPlanarDrive(YamlReader& reader, DriveConfig* drive) {
+  drive->source = DriveConfig::Odometry::WORLD;
+  reader.read("max_force", &drive->max_force, NumberRange::notNegative());
+  reader.read("max_torque", &drive->max_torque, NumberRange::notNegative());
+}
+
+}  // namespace
+
+void readDrive(YamlReader& reader, ControllerConfig* config) {
+  DriveConfig& drive = config->drive;
+  const bool planar = config->kind == ControllerKind::PLANAR_DRIVE;
+  if (planar)
+    readPlanarDrive(reader, &drive);
+  else
+    readWheeledDrive(reader, config);
+  readTwist(reader, planar, &drive);
   reader.read("cmd_vel_timeout", &drive.cmd_vel_timeout, NumberRange::notNegative());
   reader.read("cmd_vel_topic", &drive.command_topic);
   readDriveOdometry(reader, &drive);
 }
 
 const std::vector<std::string>& driveKeys(ControllerKind kind) {
-  static const std::vector<std::string> differential = withCommonKeys(DIFFERENTIAL_KEYS), steered = withCommonKeys(STEERED_KEYS);
+  static const std::vector<std::string> wheeled = joined(WHEEL_KEYS, COMMON_KEYS), differential = joined(DIFFERENTIAL_KEYS, wheeled),
+                                        steered = joined(STEERED_KEYS, wheeled), planar = joined(PLANAR_KEYS, COMMON_KEYS);
+  if (kind == ControllerKind::PLANAR_DRIVE) return planar;
   return kind == ControllerKind::STEERED_DRIVE ? steered : differential;
 }
 

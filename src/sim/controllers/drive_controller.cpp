@@ -26,13 +26,14 @@ double sinc(double x) { return std::abs(x) < SMALL_ANGLE ? 1 - x * x / 6 : std::
 
 /** @throws InputError: a joint that is there twice, or cannot be driven */
 std::vector<int> jointsOf(const RobotInfo& robot, const ControllerConfig& config) {
+  if (config.kind == ControllerKind::PLANAR_DRIVE) return {};
   for (const std::string& joint : config.joints)
     if (std::count(config.joints.begin(), config.joints.end(), joint) > 1)
       throw InputError(fmt::format("controller '{}': joint '{}' is there twice; name it once", config.name, joint));
   return controlledJoints(robot, config);
 }
 
-constexpr std::size_t MEMORY_SIZE = 13;
+constexpr std::size_t MEMORY_SIZE = 16;
 
 }  // namespace
 
@@ -45,13 +46,28 @@ struct DriveController::Memory {
   DriveTwist wanted;
   LimitedSpeed linear, angular;  ///< of the step before
   double steering = 0;           ///< [rad] of the step before
+  LimitedSpeed lateral;          ///< of the step before
 
   static Memory from(const std::array<double, MEMORY_SIZE>& n) {
-    return {n[0], n[1], n[2], n[3], n[4], n[5], {n[6], n[7]}, {n[8], n[9]}, {n[10], n[11]}, n[12]};
+    return {n[0], n[1], n[2], n[3], n[4], n[5], {n[6], n[7], n[13]}, {n[8], n[9]}, {n[10], n[11]}, n[12], {n[14], n[15]}};
   }
   std::array<double, MEMORY_SIZE> numbers() const {
-    return {steps,         command_time,         moves,   x, y, heading, wanted.linear, wanted.angular, linear.speed, linear.acceleration,
-            angular.speed, angular.acceleration, steering};
+    return {steps,
+            command_time,
+            moves,
+            x,
+            y,
+            heading,
+            wanted.linear,
+            wanted.angular,
+            linear.speed,
+            linear.acceleration,
+            angular.speed,
+            angular.acceleration,
+            steering,
+            wanted.lateral,
+            lateral.speed,
+            lateral.acceleration};
   }
 };
 
@@ -71,13 +87,20 @@ DriveController::DriveController(Simulator* simulator, int robot, ControllerConf
 
 int DriveController::robot() const { return controlledRobot(*simulator_, config_, robot_); }
 
+std::vector<std::string> DriveController::claims() const {
+  return isPlanar() ? std::vector<std::string>{robotInfo().root_link} : config_.joints;
+}
+
 void DriveController::start() {
   running_ = true;
   restart();
 }
 
 void DriveController::stop() {
-  if (running_) drive(std::vector<double>(wheels_.size()));
+  if (running_ && isPlanar())
+    simulator_->releaseBase(robot());
+  else if (running_)
+    drive(std::vector<double>(wheels_.size()));
   running_ = false;
   simulator_->remember(robot_, config_.name, {});
 }
@@ -116,19 +139,22 @@ void DriveController::restart() {
 
 void DriveController::command(const DriveTwist& twist) {
   if (!running_) throw InputError(fmt::format("controller '{}' is stopped; start it by switch_controller", config_.name));
-  for (const auto& [field, number] : {std::make_pair("linear.x", twist.linear), std::make_pair("angular.z", twist.angular)})
+  for (const auto& [field, number] : {std::make_pair("linear.x", twist.linear), std::make_pair("linear.y", isPlanar() ? twist.lateral : 0),
+                                      std::make_pair("angular.z", twist.angular)})
     if (!isCommand(number))
       throw InputError(fmt::format("twist: {}: is {}; give a finite number within {:g}", field, number, LARGEST_COMMAND));
   Memory memory = recall();
   requireCommandable(twist, memory);
   want(twist, &memory);
   memory.command_time = simulator_->time();
-  memory.moves = twist.linear != 0 || twist.angular != 0;
+  memory.moves = twist.linear != 0 || twist.angular != 0 || (isPlanar() && twist.lateral != 0);
   keep(memory);
 }
 
 DriveTwist DriveController::allowed(const DriveTwist& twist) const {
-  return {allowedSpeed(twist.linear, config_.drive.linear), allowedSpeed(twist.angular, config_.drive.angular)};
+  const DriveConfig& limits = config_.drive;
+  return {allowedSpeed(twist.linear, limits.linear), allowedSpeed(twist.angular, limits.angular),
+          isPlanar() ? allowedSpeed(twist.lateral, limits.lateral) : 0};
 }
 
 void DriveController::requireCommandable(const DriveTwist& twist, Memory memory) const {
@@ -147,6 +173,7 @@ void DriveController::want(const DriveTwist& twist, Memory* memory) {
   memory->wanted = allowed(twist);
   Memory next = *memory;
   changeSpeeds(&next);
+  if (isPlanar()) return push(next);
   drive(velocities(next));
   steer(next.steering);
 }
@@ -163,13 +190,14 @@ void DriveController::changeSpeeds(Memory* memory) const {
   const double dt = simulator_->config().time_step;
   memory->linear = speedAfterStep(memory->linear, memory->wanted.linear, config_.drive.linear, dt);
   memory->angular = speedAfterStep(memory->angular, memory->wanted.angular, config_.drive.angular, dt);
+  memory->lateral = speedAfterStep(memory->lateral, memory->wanted.lateral, config_.drive.lateral, dt);
   const double angle = wantedAngle(*memory), most = config_.drive.steering.speed * dt;
   memory->steering = most > 0 ? std::clamp(angle, memory->steering - most, memory->steering + most) : angle;
 }
 
 bool DriveController::isUnderWay(const Memory& memory) const {
   return memory.linear.speed != memory.wanted.linear || memory.angular.speed != memory.wanted.angular ||
-         memory.steering != wantedAngle(memory);
+         memory.lateral.speed != memory.wanted.lateral || memory.steering != wantedAngle(memory);
 }
 
 std::vector<double> DriveController::velocities(const Memory& memory) const {
@@ -185,6 +213,12 @@ void DriveController::drive(const std::vector<double>& velocities) {
   command.acceleration = settings.wheel_acceleration / settings.wheel_radius;
   command.max_effort = settings.wheel_torque;
   simulator_->driveJoints(robot(), command);
+}
+
+void DriveController::push(const Memory& memory) {
+  const DriveConfig& settings = config_.drive;
+  simulator_->driveBase(robot(), base_,
+                        {memory.linear.speed, memory.lateral.speed, memory.angular.speed, settings.max_force, settings.max_torque});
 }
 
 void DriveController::steer(double angle) {
@@ -213,12 +247,15 @@ void DriveController::update() {
 }
 
 bool DriveController::isCommanded() const {
+  const BaseVelocityCommand* const base = simulator_->baseCommand(robot());
+  if (isPlanar()) return base && (base->x != 0 || base->y != 0 || base->turn != 0);
   const double then = simulator_->time() + ANY_RAMP;
   return std::any_of(wheels_.begin(), wheels_.end(),
                      [&](int joint) { return simulator_->desiredState(robot(), joint, then).velocity != 0; });
 }
 
 bool DriveController::isTakenOver() const {
+  if (isPlanar()) return !simulator_->baseCommand(robot());
   return std::any_of(wheels_.begin(), wheels_.end(), [&](int joint) { return simulator_->followedPath(robot(), joint) != nullptr; });
 }
 

@@ -17,7 +17,8 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr std::size_t MOST_DRIVES = 100;  // of a robot
+constexpr std::size_t MOST_DRIVES = 100;   // of a robot
+constexpr double SHORTEST_TIMEOUT = 1e-6;  // [s] in the place of 0, after which a command ends with its step
 
 /** A drive as all plugins for them take it for granted. */
 ControllerConfig gazebosDefaults(const std::string& name) {
@@ -154,12 +155,24 @@ void readTricycle(GazeboReader* reader, ControllerConfig* config) {
   config->joints = jointsOf(steering);
 }
 
+void readPlanarMove(GazeboReader* reader, ControllerConfig* config) {
+  config->kind = ControllerKind::PLANAR_DRIVE;
+  DriveConfig* drive = &config->drive;
+  drive->publish_rate = 20;
+  reader->read("odometryRate", &drive->publish_rate, NumberRange::positive());
+  double timeout = -1;
+  reader->read("cmdTimeout", &timeout, NumberRange::any());
+  drive->cmd_vel_timeout = timeout < 0 ? 0 : std::max(timeout, SHORTEST_TIMEOUT);
+}
+
 struct DriveType {
   const char* plugin;
   void (*read)(GazeboReader* reader, ControllerConfig* config);
 };
-constexpr DriveType DRIVE_TYPES[] = {
-    {"gazebo_ros_diff_drive", readDiffDrive}, {"gazebo_ros_skid_steer_drive", readSkidSteer}, {"gazebo_ros_tricycle_drive", readTricycle}};
+constexpr DriveType DRIVE_TYPES[] = {{"gazebo_ros_diff_drive", readDiffDrive},
+                                     {"gazebo_ros_skid_steer_drive", readSkidSteer},
+                                     {"gazebo_ros_tricycle_drive", readTricycle},
+                                     {"gazebo_ros_planar_move", readPlanarMove}};
 
 /** Why a wheel cannot be driven, in words; empty if it can. */
 std::string faultOfWheel(const std::string& name, const std::vector<std::string>& wheels, const model::RobotModel& model) {

@@ -38,6 +38,8 @@ class EnergyBalance {
   void start(const dynamics::World& world);
   /** Wrenches from outside in the next solve, whose work comes out of something. */
   void setLoads(const std::vector<BodyLoad>& loads) { loads_ = loads; }
+  /** One more, which that solve has found. */
+  void addLoad(const BodyLoad& load) { loads_.push_back(load); }
   /**
    * Books a solve that was accepted.
    * @param end contacts that were found at its end

@@ -31,6 +31,13 @@ const std::map<std::string, Call> CALLS = {
        const int robot = in.takeRobot();
        to.driveJoints(robot, in.take<JointVelocityCommand>());
      }},
+    {"driveBase",
+     [](InputReader& in, Simulator& to) {
+       const int robot = in.takeRobot();
+       const auto link = in.take<int>();
+       to.driveBase(robot, link, in.take<BaseVelocityCommand>());
+     }},
+    {"releaseBase", [](InputReader& in, Simulator& to) { to.releaseBase(in.takeRobot()); }},
     {"holdJoint",
      [](InputReader& in, Simulator& to) {
        const int robot = in.takeRobot(), joint = in.takeJointOf(robot);

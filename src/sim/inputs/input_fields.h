@@ -31,6 +31,11 @@ void visitFields(Visitor& visit, JointVelocityCommand& command) {
 }
 
 template <typename Visitor>
+void visitFields(Visitor& visit, BaseVelocityCommand& command) {
+  visit(command.x, command.y, command.turn, command.max_force, command.max_torque);
+}
+
+template <typename Visitor>
 void visitFields(Visitor& visit, dynamics::BodyState& state) {
   visit(state.X_WB, state.v_WCom, state.w_WB);
 }

@@ -114,6 +114,7 @@ Eigen::Vector2d placeInBase(const std::string& joint, const ControllerConfig& co
 
 DriveConfig measured(const ControllerConfig& controller, const model::RobotModel& robot) {
   DriveConfig drive = controller.drive;
+  if (controller.kind == ControllerKind::PLANAR_DRIVE) return drive;
   const bool steers = controller.kind == ControllerKind::STEERED_DRIVE;
   requireWheels(controller, drive);
   if (steers)

@@ -22,6 +22,9 @@ NAME = "differential_drive_controller"
 ROBOTS = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
 ROVER, TRICYCLE = os.path.join(ROBOTS, "rover.urdf"), os.path.join(ROBOTS, "tricycle.urdf")
 SPEED, TURN = 0.5, 0.5  # [m/s], [rad/s]
+SLEDGE = """<robot name="sledge"><link name="base_link"><inertial><mass value="5"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><geometry><box size="0.4 0.4 0.2"/></geometry></collision></link>
+  <gazebo><plugin name="push" filename="libgazebo_ros_planar_move.so"><robotBaseFrame>base_link</robotBaseFrame></plugin></gazebo></robot>"""
 
 
 def heading(pose):
@@ -53,12 +56,12 @@ class DriveTest(unittest.TestCase):
         wait_until(recorder.connected, topic)
         return recorder
 
-    def drive(self, topic, linear, angular):
+    def drive(self, topic, linear, angular, lateral=0):
         publisher = rospy.Publisher(topic, Twist, queue_size=1)
         self.addCleanup(publisher.unregister)
         wait_until(lambda: publisher.get_num_connections() > 0, topic)
         twist = Twist()
-        twist.linear.x, twist.angular.z = linear, angular
+        twist.linear.x, twist.linear.y, twist.angular.z = linear, lateral, angular
         publisher.publish(twist)
         rospy.rostime.wallsleep(0.3)
 
@@ -141,6 +144,22 @@ class DriveTest(unittest.TestCase):
             self.assertAlmostEqual(twist.linear.x, SPEED * math.cos(angle), delta=0.01 * SPEED)
             self.assertAlmostEqual(twist.angular.z, side * SPEED * math.sin(angle) / wheelbase, delta=0.01)
         self.assertTrue(sim_client.service("delete_model", DeleteModel)("trike").success)
+        sim_client.step(1)
+
+    def test_a_spawned_box_is_pushed_as_by_planar_move(self):
+        spawned = sim_client.service("spawn_urdf_model", SpawnModel)("sledge", SLEDGE, "sledge", Pose(position=Point(0, 9, 0.1026)), "")
+        self.assertTrue(spawned.success, spawned.status_message)
+        self.assertIn("push (on /sledge/cmd_vel)", spawned.status_message)
+        controllers = listed("/sledge")
+        self.assertEqual({name: (c.type, c.state) for name, c in controllers.items()}, {"push": ("blem_sim/PlanarDrive", "running")})
+        odometry = self.listen("/sledge/odom", Odometry)
+        self.drive("/sledge/cmd_vel", 0.3, 0, 0.2)
+        first, last = self.run_to(odometry, 500), self.run_to(odometry, 1000)
+        seconds = (last.header.stamp - first.header.stamp).to_sec()
+        self.assertAlmostEqual(last.pose.pose.position.x - first.pose.pose.position.x, 0.3 * seconds, delta=1e-5)
+        self.assertAlmostEqual(last.pose.pose.position.y - first.pose.pose.position.y, 0.2 * seconds, delta=1e-5)
+        self.assertAlmostEqual(last.twist.twist.linear.y, 0.2, delta=1e-4)
+        self.assertTrue(sim_client.service("delete_model", DeleteModel)("sledge").success)
         sim_client.step(1)
 
     def test_odometry_and_frames_are_told_during_a_pause(self):

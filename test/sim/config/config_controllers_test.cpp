@@ -155,6 +155,27 @@ TEST(ConfigControllers, ReadsDrivesThatSteer) {
   EXPECT_EQ(config.joints, (std::vector<std::string>{"a", "b", "s"}));
 }
 
+TEST(ConfigControllers, ReadsDrivesWithoutWheels) {
+  const auto list = [](const std::string& more) { return ", controllers: [{name: d, type: planar_drive" + more + "}]"; };
+  const ControllerConfig config =
+      controllersOf(list(", max_force: 50, max_torque: 7, cmd_vel_timeout: 3, linear: {y: {has_velocity_limits: true, max_velocity: 2}}"))
+          .value()
+          .front();
+  EXPECT_EQ(config.kind, ControllerKind::PLANAR_DRIVE);
+  EXPECT_TRUE(config.joints.empty());
+  EXPECT_EQ(config.drive.max_force, 50);
+  EXPECT_EQ(config.drive.max_torque, 7);
+  EXPECT_EQ(config.drive.cmd_vel_timeout, 3);
+  EXPECT_EQ(config.drive.lateral.max_velocity, 2);
+  EXPECT_EQ(config.drive.lateral.min_velocity, -2);
+  EXPECT_EQ(config.drive.linear.max_velocity, SpeedLimits::NONE);
+  EXPECT_EQ(config.drive.source, DriveConfig::Odometry::WORLD);
+  const auto told = [](const std::string& more) { return refusalOfList("{name: d, type: planar_drive, " + more + "}"); };
+  EXPECT_TRUE(isOneLineWith(told("max_force: -1"), {"max_force", "at least 0"}));
+  EXPECT_TRUE(isOneLineWith(told("left_wheel: a"), {"left_wheel", "unknown"}));
+  EXPECT_TRUE(isOneLineWith(told("odometry_source: encoder"), {"odometry_source", "unknown"}));
+}
+
 TEST(ConfigControllers, RefusesFaultyDrivesThatSteer) {
   const auto told = [](const std::string& drive) { return refusalOfList("{name: d, type: steered_drive, " + drive + "}"); };
   EXPECT_TRUE(isOneLineWith(told("front_steer: s"), {"rear_wheel", "missing", "not steered"}));

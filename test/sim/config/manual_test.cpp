@@ -94,7 +94,7 @@ TEST(Manual, HoldsEveryKnownKey) {
   EXPECT_EQ(config.robots.size(), 2u);
   EXPECT_EQ(config.robots[0].sensors.size(), 10u);
   ASSERT_TRUE(config.robots[0].controllers);
-  EXPECT_EQ(config.robots[0].controllers->size(), 5u);
+  EXPECT_EQ(config.robots[0].controllers->size(), 6u);
   EXPECT_FALSE(config.robots[1].controllers);
   EXPECT_EQ(config.objects.size(), 2u);
   ASSERT_EQ(config.environments.size(), 6u);

@@ -53,6 +53,37 @@ TEST(GazeboDrives, ADiffDriveIsRead) {
   EXPECT_EQ(robot.notes.size(), 3u);
 }
 
+TEST(GazeboDrives, APlanarMoveIsRead) {
+  GazeboRobot robot =
+      roverWith(drivePlugin("planar_move",
+                            "<commandTopic>cmd</commandTopic><odometryTopic>way</odometryTopic><odometryFrame>map</odometryFrame>"
+                            "<odometryRate>30</odometryRate><robotBaseFrame>base_link</robotBaseFrame>"
+                            "<cmdTimeout>0.4</cmdTimeout>"));
+  ASSERT_EQ(robot.config.drives.size(), 1u);
+  const ControllerConfig& config = robot.config.drives.front();
+  EXPECT_EQ(config.kind, ControllerKind::PLANAR_DRIVE);
+  EXPECT_TRUE(config.joints.empty());
+  EXPECT_EQ(config.drive.command_topic, "cmd");
+  EXPECT_EQ(config.drive.odom_topic, "way");
+  EXPECT_EQ(config.drive.odom_frame, "map");
+  EXPECT_EQ(config.drive.publish_rate, 30);
+  EXPECT_EQ(config.drive.base_frame, "base_link");
+  EXPECT_EQ(config.drive.cmd_vel_timeout, 0.4);
+  EXPECT_EQ(config.drive.max_force, 0);
+  EXPECT_TRUE(config.drive.enable_odom_tf);
+  EXPECT_EQ(config.drive.source, DriveConfig::Odometry::WORLD);
+  EXPECT_EQ(robot.notes.size(), 1u);
+  robot = roverWith(drivePlugin("planar_move", ""));
+  ASSERT_EQ(robot.config.drives.size(), 1u);
+  const DriveConfig& drive = robot.config.drives.front().drive;
+  EXPECT_EQ(drive.command_topic, "cmd_vel");
+  EXPECT_EQ(drive.odom_topic, "odom");
+  EXPECT_EQ(drive.odom_frame, "odom");
+  EXPECT_EQ(drive.publish_rate, 20);
+  EXPECT_EQ(drive.cmd_vel_timeout, 0) << "never";
+  EXPECT_EQ(toldTimes(robot.notes, "'base_footprint'"), 1) << "the root link is taken";
+}
+
 TEST(GazeboDrives, WithoutLegacyModeLeftIsRightAsInGazebo) {
   const GazeboRobot robot = roverWith(drivePlugin("diff_drive", "<leftJoint>left_axle</leftJoint><rightJoint>right_axle</rightJoint>"));
   ASSERT_EQ(robot.config.drives.size(), 1u);

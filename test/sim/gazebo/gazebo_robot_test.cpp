@@ -60,10 +60,10 @@ TEST(GazeboBlocks, WhatIsNotUnderstoodIsListedInOneLine) {
   const GazeboRobot robot =
       described(onLink("<glitter>1</glitter><glitter>2</glitter><fizz><depth>1</depth></fizz>" + sensorBlock("sonar", "", "ping") +
                        sensorBlock("camera", plugin("camera", ""), "eye") + sensorBlock("imu", "<aura/>" + plugin("bumper", ""))) +
-                "<gazebo>" + plugin("planar_move", "<wheel>w</wheel>", "drive") + "</gazebo>");
+                "<gazebo>" + plugin("ackermann_drive", "<wheel>w</wheel>", "drive") + "</gazebo>");
   for (const char* words :
        {"'leg' <glitter>", "'leg' <fizz/depth>", "sensor 'ping' of type 'sonar'", "sensor 'eye' of type 'camera'", "sensor 's' <aura>",
-        "plugin 'p' of type 'libgazebo_ros_bumper.so' in sensor 's'", "plugin 'drive' of type 'libgazebo_ros_planar_move.so'"})
+        "plugin 'p' of type 'libgazebo_ros_bumper.so' in sensor 's'", "plugin 'drive' of type 'libgazebo_ros_ackermann_drive.so'"})
     EXPECT_EQ(told(robot, words), 1) << words << " in " << allNotes(robot);
   EXPECT_EQ(told(robot, "<gazebo>: not read"), 1);
   EXPECT_EQ(robot.notes.size(), 2u) << "and the list of sensors: " << allNotes(robot);

@@ -23,8 +23,15 @@ SimulationConfig sceneWithCloud() {
   live.live.topic = "/points";
   live.X_WE = makePose({0, 0, 0});
   config.environments.push_back(live);
+  config.robots.push_back(robot("sled",
+                                R"(<robot name="sled"><link name="hull"><inertial><mass value="1"/>
+                                  <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>)",
+                                false));
+  config.robots.back().X_WR = makePose({3, 0, 1});
   return config;
 }
+
+constexpr int SLED = 1, SECOND = 2;  // robots; the latter is spawned
 
 CloudSurface cloudBelowCube() {
   std::vector<Vector3> points;
@@ -68,9 +75,13 @@ std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& ear
       [](Simulator& s) {
         s.driveJoints(0, {{"hinge"}, {0.3}, 1.7, 0.4});
       },
+      [](Simulator& s) {
+        s.driveBase(SLED, 0, {0.2, 0.1, 0.3, 0, 0});
+      },
+      [](Simulator& s) { s.releaseBase(SLED); },
       [cloud](Simulator& s) mutable { s.updateCloud("live", &cloud); },
       [](Simulator& s) { s.spawn(spawned()); },
-      [](Simulator& s) { s.holdJoints(1, {0}); },
+      [](Simulator& s) { s.holdJoints(SECOND, {0}); },
       [](Simulator& s) { s.loadEnvironment(tilted()); },
       [=](Simulator& s) { s.moveModel(s.models()[s.modelIndex("ball")].bodies[0], thrown); },
       [](Simulator& s) {
@@ -79,15 +90,15 @@ std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& ear
       [](Simulator& s) {
         s.applyEffort(s.robots()[0].joints[0], 2.5, {0, -1});
       },
-      [](Simulator& s) { s.setJointPositions(1, {"hinge"}, {0.7}); },
-      [](Simulator& s) { s.setJointDamping(1, 0, 0.7); },
+      [](Simulator& s) { s.setJointPositions(SECOND, {"hinge"}, {0.7}); },
+      [](Simulator& s) { s.setJointDamping(SECOND, 0, 0.7); },
       [](Simulator& s) {
-        s.setMotorGains(1, 0, {90, 4, 3, 50});
+        s.setMotorGains(SECOND, 0, {90, 4, 3, 50});
       },
       [](Simulator& s) { s.setFriction(s.modelIndex("cube"), 0.11); },
-      [](Simulator& s) { s.setJointLimits(1, 0, -2, 2); },
-      [=](Simulator& s) { s.setLinkInertial(s.robots()[1].bodies[1], 1, heavier); },
-      [](Simulator& s) { s.setLinkGravity(s.robots()[1].bodies[1], 1, false); },
+      [](Simulator& s) { s.setJointLimits(SECOND, 0, -2, 2); },
+      [=](Simulator& s) { s.setLinkInertial(s.robots()[SECOND].bodies[1], 1, heavier); },
+      [](Simulator& s) { s.setLinkGravity(s.robots()[SECOND].bodies[1], 1, false); },
       [](Simulator& s) {
         s.setPhysics({0.1, 0, -9}, 0.0005, 1);
       },
