@@ -114,6 +114,7 @@ void Simulator::releaseBase(int robot) {
   impl_->releaseBase(robot);
   impl_->tell("releaseBase", robot);
 }
+void Simulator::checkBase(int robot) const { impl_->checkBase(robot); }
 const BaseVelocityCommand* Simulator::baseCommand(int robot) const { return impl_->base_drives_.commandOf(robots().at(robot).bodies[0]); }
 void Simulator::checkJointCommand(int robot, const JointCommandMessage& command) const { impl_->checkJointCommand(robot, command); }
 JointSample Simulator::desiredState(int robot, int joint) const { return desiredState(robot, joint, time()); }

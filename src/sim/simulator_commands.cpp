@@ -102,11 +102,19 @@ void Simulator::Impl::driveJoints(int robot, const JointVelocityCommand& command
   }
 }
 
+void Simulator::Impl::checkBase(int robot) const {
+  const RobotInfo& info = world_.robots.at(robot);
+  const std::string& stepper = config_.solver.stepper;
+  if (info.fixed_base)
+    throw InputError(fmt::format("robot '{}': its base is fixed, so nothing pushes it; leave fixed_base out", info.name));
+  if (stepper != "articulated")
+    throw InputError(fmt::format("robot '{}': {} pushes no base; set solver.stepper to articulated", info.name, stepper));
+}
+
 void Simulator::Impl::driveBase(int robot, int link, const BaseVelocityCommand& command) {
+  checkBase(robot);
   const RobotInfo& info = world_.robots.at(robot);
   const auto refuse = [&](const std::string& why) { throw InputError(fmt::format("robot '{}': base velocity: {}", info.name, why)); };
-  if (info.fixed_base) refuse("its base is fixed; leave fixed_base out");
-  if (config_.solver.stepper != "articulated") refuse(config_.solver.stepper + " drives no base; set solver.stepper to articulated");
   for (const double number : {command.x, command.y, command.turn, command.max_force, command.max_torque})
     if (!isCommand(number)) refuse(fmt::format("has {}; numbers must be finite, and not beyond {:g}", number, LARGEST_COMMAND));
   if (command.max_force < 0 || command.max_torque < 0) refuse("bounds are below 0; give 0 or more");

@@ -111,6 +111,7 @@ struct Simulator::Impl {
   void driveJoints(int robot, const JointVelocityCommand& command);
   void driveBase(int robot, int link, const BaseVelocityCommand& command);
   void releaseBase(int robot);
+  void checkBase(int robot) const;
   void checkJointCommand(int robot, const JointCommandMessage& command) const;
   JointSample desiredState(int world_joint, double time) const;
   /** A position as the joint takes it: a joint that turns without end takes the turn nearest to its present position. */

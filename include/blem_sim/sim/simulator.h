@@ -63,6 +63,8 @@ class Simulator {
    */
   void driveBase(int robot, int link, const BaseVelocityCommand& command);
   void releaseBase(int robot);
+  /** Changes nothing. @throws InputError: a base that driveBase cannot push */
+  void checkBase(int robot) const;
   const BaseVelocityCommand* baseCommand(int robot) const;  ///< with the bounds that hold; null: nothing drives the base
   /** Changes nothing. @throws InputError as commandJoints would */
   void checkJointCommand(int robot, const JointCommandMessage& command) const;

@@ -105,7 +105,13 @@ RobotControllers::RobotControllers(ros::NodeHandle node, SimulationLoop* loop, i
     addConfigured(config);
     controllers_.back().gives_way = !configured;
   }
-  for (const sim::ControllerConfig& drive : info.drives) addConfigured(drive);
+  for (const sim::ControllerConfig& drive : info.drives) {
+    try {
+      addConfigured(drive);
+    } catch (const InputError& error) {
+      ROS_WARN("%s; the drive of its <gazebo> block is left out", error.what());
+    }
+  }
   startFirst();
 }
 

@@ -76,6 +76,7 @@ DriveController::DriveController(Simulator* simulator, int robot, ControllerConf
       robot_(simulator->robots().at(robot).name),
       config_(std::move(config)),
       joints_(jointsOf(simulator->robots().at(robot), config_)) {
+  if (isPlanar()) simulator->checkBase(robot);
   const model::RobotModel& model = *simulator->robots()[robot].description;
   config_.drive = measured(config_, model);
   undercarriage_ = undercarriageOf(config_, model);

@@ -189,7 +189,11 @@ bool hasName(const std::vector<ControllerConfig>& controllers, const std::string
 }
 
 /** Notes what is wrong with a drive. @return whether it can be used */
-bool isUsable(const ControllerConfig& config, const model::RobotModel& model, GazeboReader* reader) {
+bool isUsable(const ControllerConfig& config, const RobotConfig& robot, const model::RobotModel& model, GazeboReader* reader) {
+  if (config.kind == ControllerKind::PLANAR_DRIVE && robot.fixed_base) {
+    reader->notes().fault(reader->where(), "the base is fixed, so nothing pushes it; the drive is left out");
+    return false;
+  }
   for (const std::string& name : config.joints) {
     const std::string why = faultOfWheel(name, config.joints, model);
     if (why.empty()) continue;
@@ -232,7 +236,7 @@ bool readGazeboDrive(const model::GazeboBlock& plugin, const model::RobotModel& 
     notes->fault(reader.where(), fmt::format("is one of more than {} drives; it is left out: give fewer", MOST_DRIVES));
   } else if (hasName(robot->drives, config.name)) {
     notes->fault(reader.where(), "is there twice; it is left out: rename it");
-  } else if (isUsable(config, model, &reader)) {
+  } else if (isUsable(config, *robot, model, &reader)) {
     if (model.linkIndex(drive.base_frame) < 0)
       reader.fault("robotBaseFrame", unknownName("link", drive.base_frame, model.links) + "; the root link is taken: name one");
     notes->drive(fmt::format("{} (on {})", config.name, resolvedTopic(robot->name_space, drive.command_topic)));

@@ -1,11 +1,9 @@
 #!/usr/bin/python3
 """figure.launch: a figure without data and one with data start, answer services, and publish the joints of their robot."""
-import os
 import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 
 import rospy
@@ -24,8 +22,7 @@ class Started:
     """A figure's launch, on this master, while it is asked."""
 
     def __init__(self, *arguments):
-        self.folder = tempfile.TemporaryDirectory()
-        self.process = subprocess.Popen(["roslaunch", "blem_sim", "figure.launch", *arguments], env={**os.environ, "TMPDIR": self.folder.name})
+        self.process = subprocess.Popen(["roslaunch", "blem_sim", "figure.launch", *arguments])
 
     def __enter__(self):
         rospy.wait_for_service("/blem_sim/get_world_properties", PATIENCE)
@@ -34,7 +31,6 @@ class Started:
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
         self.process.wait(PATIENCE)
-        self.folder.cleanup()
 
 
 class FigureLaunchTest(unittest.TestCase):

@@ -82,6 +82,11 @@ TEST(GazeboDrives, APlanarMoveIsRead) {
   EXPECT_EQ(drive.publish_rate, 20);
   EXPECT_EQ(drive.cmd_vel_timeout, 0) << "never";
   EXPECT_EQ(toldTimes(robot.notes, "'base_footprint'"), 1) << "the root link is taken";
+  RobotConfig held;
+  held.fixed_base = true;
+  robot = roverWith(drivePlugin("planar_move", ""), held);
+  EXPECT_TRUE(robot.config.drives.empty());
+  EXPECT_EQ(toldTimes(robot.notes, "base is fixed"), 1);
 }
 
 TEST(GazeboDrives, WithoutLegacyModeLeftIsRightAsInGazebo) {
