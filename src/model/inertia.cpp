@@ -83,31 +83,31 @@ Inertial sum(const Inertial& a, const Inertial& b) {
   return total;
 }
 
-void repairInertia(const std::string& who, Inertial* inertial, std::vector<std::string>* notes) {
+void repairInertia(const NamedBody& body, Inertial* inertial, std::vector<std::string>* notes) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(inertial->inertia);
   Vector3 principal = solver.eigenvalues();
   const double largest = principal.cwiseAbs().maxCoeff();
   if (largest == 0) {
     inertial->inertia = ball(Vector3::Zero(), BALL_RADIUS, inertial->mass).inertia;
-    notes->push_back(fmt::format("{}: its inertia is zero; a solid ball of 1 cm stands in", who));
+    notes->push_back(fmt::format("{}: its inertia is zero; a solid ball of 1 cm stands in", body.name));
     return;
   }
   if (principal[0] < -ROUNDING_RATIO * largest)
     throw InputError(
-        fmt::format("{}: its inertia is not positive definite (principal values {:.4g} {:.4g} {:.4g} kg m^2); correct <inertia>", who,
-                    principal[0], principal[1], principal[2]));
+        fmt::format("{}: {}: its inertia is not positive definite (principal values {:.4g} {:.4g} {:.4g} kg m^2); correct <inertia>",
+                    body.source, body.name, principal[0], principal[1], principal[2]));
   if (principal[0] < LEAST_RATIO * largest) {
     principal = principal.cwiseMax(LEAST_RATIO * largest);
     const Matrix3 axes = solver.eigenvectors();
     inertial->inertia = axes * principal.asDiagonal() * axes.transpose();
-    notes->push_back(
-        fmt::format("{}: its least principal inertia is raised to {:.3g} kg m^2, so that it is positive definite", who, principal[0]));
+    notes->push_back(fmt::format("{}: its least principal inertia is raised to {:.3g} kg m^2, so that it is positive definite", body.name,
+                                 principal[0]));
   }
   const double excess = principal[2] - principal[0] - principal[1];
   if (excess > ROUNDING_RATIO * principal[2])
     notes->push_back(fmt::format(
         "{}: no rigid body has principal inertias {:.4g} {:.4g} {:.4g} kg m^2 (the largest exceeds the sum of the others); kept as given",
-        who, principal[0], principal[1], principal[2]));
+        body.name, principal[0], principal[1], principal[2]));
 }
 
 std::optional<Inertial> inertialOfShapes(const std::vector<CollisionShape>& shapes) {

@@ -15,11 +15,16 @@ Inertial movedTo(const Pose& X_AB, const Inertial& inertial);
 /** Sum of two inertials in the same frame, about their common centre of mass. Massless ones add their inertia only. */
 Inertial sum(const Inertial& a, const Inertial& b);
 
+/** A body in texts: where it is from, which notes need not say, and its name. */
+struct NamedBody {
+  std::string source, name;
+};
+
 /**
  * Makes the inertia of a body with mass positive definite where rounding or a zero spoilt it; says so in `notes`.
- * @param who names the body in texts. @throws InputError if it is far from positive definite
+ * @throws InputError if it is far from positive definite
  */
-void repairInertia(const std::string& who, Inertial* inertial, std::vector<std::string>* notes);
+void repairInertia(const NamedBody& body, Inertial* inertial, std::vector<std::string>* notes);
 
 /** Inertial of collision shapes at 1000 kg/m^3, in the shapes' frame: solid where closed, else a shell of 1 mm. None without a shape. */
 std::optional<Inertial> inertialOfShapes(const std::vector<CollisionShape>& shapes);

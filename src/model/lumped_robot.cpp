@@ -121,7 +121,7 @@ class Lumping {
                       who, body.inertial.mass));
     if (!(body.inertial.mass > 0))
       throw InputError(fmt::format("{}: it moves, but its mass is {:g} kg; give it a positive mass", who, body.inertial.mass));
-    repairInertia(who, &body.inertial, &lumped_.notes);
+    repairInertia({robot_.source, fmt::format("link '{}'", body.name)}, &body.inertial, &lumped_.notes);
   }
 
   void takeInertialOfShapes(LumpedBody* body) {

@@ -90,7 +90,7 @@ void Simulator::Impl::spawn(RobotConfig robot) {
 }
 
 void Simulator::Impl::removeModel(const std::string& name) {
-  requireName(name, modelNames(world_.models), "delete_model", "model");
+  requireName(name, modelNames(world_.models), "model_name", "model");
   const int model = world_.modelIndex(name);
   detachAll(model);
   if (world_.robotOf(model) >= 0) {

@@ -211,6 +211,7 @@ TEST(LumpedRobot, inertiasAreRepairedOrRefused) {
   const LumpedRobot impossible = lumpFixedJoints(body("ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"3\""), {}, false);
   EXPECT_EQ(impossible.bodies[0].inertial.inertia(2, 2), 3);  // Atlas is given so; it is kept, and said
   EXPECT_TRUE(isNoted(impossible.notes, "no rigid body"));
+  EXPECT_FALSE(isNoted(impossible.notes, "test.urdf")) << "the robot's name stands before all of its notes";
   const RobotModel skewed = body("ixx=\"1\" ixy=\"2\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"");
   EXPECT_TRUE(isOneLineWith(refusal([&] { lumpFixedJoints(skewed, {}, false); }), {"test.urdf", "link 'b'", "not positive definite"}));
   EXPECT_EQ(refusal([&] { lumpFixedJoints(skewed, {}, true); }), "");  // a fixed base needs none

@@ -191,6 +191,23 @@ void countExtensions(const Element& element, const std::set<std::string>& known,
   });
 }
 
+/** Refuses what xacro would have replaced. What is drawn alone, and what plugins read, may hold such text. */
+void checkExpanded(const Element& element, const std::string& source) {
+  static const std::set<std::string> OTHERS = {"gazebo", "visual", "material"};
+  const auto refuseXacro = [&](const std::string& words) {
+    refuse(source, fmt::format("<{}>: this is xacro, not URDF; expand it first (xacro FILE > robot.urdf)", words));
+  };
+  const std::string name = element.Name();
+  if (name.compare(0, 6, "xacro:") == 0) refuseXacro(name);
+  if (OTHERS.count(name) > 0) return;
+  for (const tinyxml2::XMLAttribute* given = element.FirstAttribute(); given; given = given->Next()) {
+    const std::string value = given->Value();
+    if (value.find("${") != std::string::npos || value.find("$(") != std::string::npos)
+      refuseXacro(fmt::format("{} {}=\"{}\"", name, given->Name(), value));
+  }
+  forChildren(element, nullptr, [&](const Element& child) { checkExpanded(child, source); });
+}
+
 const Element& robotElement(const tinyxml2::XMLDocument& document, const std::string& xml, const std::string& source) {
   if (document.Error()) {
     const bool hint = xml.find_first_not_of(" \t\r\n") == std::string::npos;
@@ -202,10 +219,7 @@ const Element& robotElement(const tinyxml2::XMLDocument& document, const std::st
   if (!robot || std::string(robot->Name()) != "robot")
     refuse(source, fmt::format("the outermost element is <{}>; a URDF begins with <robot name=\"...\">", robot ? robot->Name() : ""));
   if (attribute(*robot, "name").empty()) refuse(source, "<robot> has no name; write <robot name=\"...\">");
-  forChildren(*robot, nullptr, [&](const Element& child) {
-    if (std::string(child.Name()).compare(0, 6, "xacro:") == 0)
-      refuse(source, fmt::format("<{}>: this is xacro, not URDF; expand it first (xacro FILE > robot.urdf)", child.Name()));
-  });
+  checkExpanded(*robot, source);
   return *robot;
 }
 

@@ -130,6 +130,12 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   addSensors(world->addRobot(info_));
 }
 
+void RobotBuilder::note(const std::string& words) {
+  const std::string of_inline_urdf = "robots: " + config_.name + ": ";
+  const bool is_named = words.compare(0, of_inline_urdf.size(), of_inline_urdf) == 0;
+  world_->notes.push_back(config_.name + ": " + words.substr(is_named ? of_inline_urdf.size() : 0));
+}
+
 void RobotBuilder::nameFrames() {
   info_.publish_tf = config_.publish_tf;
   info_.odom = config_.odom;

@@ -55,7 +55,8 @@ class RobotBuilder {
   /** Says where the axes of a wrench and their origin are. */
   void placeWrench(SensorConfig* sensor) const;
   void checkFrame(const SensorConfig& sensor);
-  void note(const std::string& words) { world_->notes.push_back(config_.name + ": " + words); }
+  /** Notes a line, which begins with the robot's name, once. */
+  void note(const std::string& words);
 
   const RobotConfig config_;
   const ContactConfig contact_;

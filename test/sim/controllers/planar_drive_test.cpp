@@ -1,6 +1,7 @@
 // A robot without wheels that is pushed over the ground: its way, its force, what it leaves alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -199,6 +200,18 @@ TEST(PlanarDrive, LeavesTheBaseFreeWhenItStops) {
   sledge.drive.stop();
   EXPECT_EQ(sledge.simulator.baseCommand(0), nullptr);
   EXPECT_TRUE(isOneLineWith(refusal([&] { sledge.drive.command({0.1, 0}); }), {"drive", "stopped"}));
+}
+
+TEST(PlanarDrive, OfAPluginIsLeftOutWhereTheBaseIsFixed) {
+  SimulationConfig config = sledgeScene();
+  std::string& urdf = config.robots[0].urdf_xml;
+  urdf.insert(urdf.rfind("</robot>"), R"(<gazebo><plugin name="push" filename="libgazebo_ros_planar_move.so"/></gazebo>)");
+  EXPECT_EQ(Simulator(config, model::UriResolver()).robots()[0].drives.size(), 1u);
+  config.robots[0].fixed_base = true;
+  const Simulator held(config, model::UriResolver());
+  EXPECT_TRUE(held.robots()[0].drives.empty());
+  const auto told = [](const std::string& note) { return note.find("sledge: plugin 'push': the base is fixed") == 0; };
+  EXPECT_EQ(std::count_if(held.notes().begin(), held.notes().end(), told), 1);
 }
 
 TEST(PlanarDrive, RefusesWhatItCannotMove) {
