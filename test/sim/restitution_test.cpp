@@ -52,6 +52,35 @@ Bouncing halfPeriod(const SimulationConfig& config) {
   return swing;
 }
 
+// The ground bears what lies on it while something bounces off that: a light plate gave way, and the ball stayed where it fell.
+TEST(Restitution, ABallBouncesOffWhatLiesOnTheGround) {
+  constexpr double FALL = 0.3, E = 0.8, BALL_RADIUS = 0.03;  // [m]
+  for (const int plates : {1, 3})
+    for (const double mass : {0.01, 0.5, 5.0}) {
+      SimulationConfig config;
+      config.environments = {ground()};
+      double top = 0;
+      for (int i = 0; i < plates; ++i) {
+        top += i == 0 ? 0.0025 : 0.005;
+        config.objects.push_back(box("plate" + std::to_string(i), {0.4, 0.4, 0.02}, mass, {0, 0, top + 0.01}));
+        top += 0.02;
+      }
+      top += 0.0025 + BALL_RADIUS;
+      ObjectConfig ball = exactBall("ball", BALL_RADIUS, 0.1);
+      ball.contact.restitution = E;
+      ball.X_WO = makePose({0.05, 0.02, top + FALL});
+      config.objects.push_back(ball);
+      Simulator simulator(config, model::UriResolver());
+      double apex = 0;
+      for (int i = 0; i < 500; ++i) {
+        simulator.step();
+        if (bodyOf(simulator, "ball").v_WCom.z() > 0) apex = std::max(apex, bodyOf(simulator, "ball").X_WB.translation().z() - top);
+      }
+      EXPECT_NEAR(apex / FALL, E * E, 0.005) << plates << " plates of " << mass << " kg";
+      EXPECT_LT(bodyOf(simulator, "plate0").v_WCom.norm(), 1e-6) << plates << " plates of " << mass << " kg";
+    }
+}
+
 class SphereCradle : public ::testing::TestWithParam<double> {};
 
 TEST_P(SphereCradle, KeepsItsEnergyAndAsManyLeaveAsCame) {

@@ -8,11 +8,16 @@ namespace {
 
 // An impact bounces if it is faster than the speed that a contact at rest gains in some steps, by gravity and by the forces that press it.
 constexpr double REST_STEPS = 2;
-constexpr double REST_SPEED = 1e-3;  // [m/s] and than this
-constexpr int MAX_ROUNDS = 100;      // a row of as many touching bodies passes an impact on
-constexpr int MAX_SWEEPS = 100;      // of the contacts that meet in a round
-constexpr int MAX_WORK = 100000;     // contacts visited, over all sweeps of a step
-constexpr double EXACTNESS = 1e-11;  // of the largest speed: changes of velocity at which a sweep is the last
+constexpr double REST_SPEED = 1e-3;         // [m/s] and than this
+constexpr int MAX_ROUNDS = 100;             // a row of as many touching bodies passes an impact on
+constexpr int MAX_SWEEPS = 100;             // of the contacts that meet in a round
+constexpr int HOLDING_SWEEPS = 1000;        // of those that others hold: what is light between what is heavy takes many
+constexpr int MAX_HOLDING = 20;             // times that a round is made again, since more has to hold
+constexpr double TOUCH = 1e-6;              // [m or rad] gap up to which something holds
+constexpr int MAX_WORK = 100000;            // contacts visited, over all sweeps of a step
+constexpr double EXACTNESS = 1e-11;         // of the largest speed: changes of velocity at which a sweep is the last
+constexpr double HOLDING_EXACTNESS = 1e-7;  // the same of those that others hold,
+constexpr double SEARCH_EXACTNESS = 1e-2;   // while it is looked for what holds
 
 double normalSpeed(const BodyPair& pair, const ContactTerm& term, const std::vector<Vector6>& twist) {
   return term.normal.dot(velocityAt(relativeTwist(pair, twist), term.point));
@@ -22,6 +27,11 @@ double normalSpeed(const BodyPair& pair, const ContactTerm& term, const std::vec
 // friction of their own are left to the solve.
 bool hasImpacts(const ContactConstraint& c, const ContactTerm& term) {
   return (c.restitution > 0 || c.impact_friction_factor != 1) && !(term.compliance > 0 && c.depth > 0);
+}
+
+// Whether a contact touches and answers an impact at once, without bouncing.
+bool holdsImpacts(const ContactConstraint& c, const ContactTerm& term) {
+  return c.restitution == 0 && !(term.compliance > 0) && c.depth >= -TOUCH;
 }
 
 double slowestBounce(const TermSource& s, double kick) {
@@ -45,27 +55,43 @@ bool IslandImpacts::expect(const TermSource& s, const TouchedIsland& island) {
 }
 
 void IslandImpacts::begin(const TermSource& s, const TouchedIsland& island, const SolverSpace& solver) {
-  bouncers_.clear();
   rows_.clear();
   work_left_ = MAX_WORK;
+  mass_.factor(s.forest, s.motion, island.model, space_);
   for (const int tree : island.model.trees) {
     const ForestTree& t = s.forest.trees()[tree];
     const int first = t.first_dof, count = t.dofCount();
-    factorTree({s.forest, tree, s.motion.mass}, &space_->factor);
     space_->column.segment(first, count) = 0.5 * (solver.free_momentum.segment(first, count) - solver.mass_velocity.segment(first, count));
     // A slow step's momentum is half a step beside its velocities; a fast tree takes that difference at once.
     if (t.free && s.motion.pace[tree] == Pace::FAST)
       space_->column.segment<6>(first) += 0.5 * (s.motion.momentum[tree] - solver.mass_velocity.segment<6>(first));
-    solveTree(s.forest, tree, space_->factor, &space_->column, &space_->paths);
-    space_->velocity.segment(first, count) = solver.velocity.segment(first, count) + space_->column.segment(first, count);
+  }
+  for (const int tree : island.model.trees) {
+    if (mass_.movedWith(tree).front() == tree) mass_.solve(s.forest, tree, &space_->column, space_);
+    const ForestTree& t = s.forest.trees()[tree];
+    const int first = t.first_dof, count = t.dofCount();
     space_->leap.segment(first, count).setZero();
     space_->momentum.segment(first, count).setZero();
+    space_->velocity.segment(first, count) = solver.velocity.segment(first, count) + space_->column.segment(first, count);
   }
+  findBouncers(s, island);
+  findLimits(s, island);
+  setSpeeds(s, island, space_->column);
+  for (Bouncer& b : bouncers_) {
+    b.kick = b.speed;
+    b.slowest = slowestBounce(s, b.kick);
+  }
+}
+
+void IslandImpacts::findBouncers(const TermSource& s, const TouchedIsland& island) {
+  bouncers_.clear();
   for (const PairContacts& of_pair : island.model.pairs)
     for (int i = of_pair.first; i < of_pair.end; ++i) {
       const ContactConstraint& c = s.input.contacts[island.contacts[i]];
-      if (!hasImpacts(c, island.terms.contacts[i])) continue;
       Bouncer bouncer;
+      bouncer.has_impacts = hasImpacts(c, island.terms.contacts[i]);
+      bouncer.holds = holdsImpacts(c, island.terms.contacts[i]);
+      if (!bouncer.has_impacts && !bouncer.holds) continue;
       bouncer.contact = i;
       bouncer.pair = &of_pair.pair;
       bouncer.restitution = c.restitution;
@@ -75,16 +101,42 @@ void IslandImpacts::begin(const TermSource& s, const TouchedIsland& island, cons
       bouncer.depth = c.depth;
       bouncers_.push_back(bouncer);
     }
-  setSpeeds(s, island, space_->column);
-  for (Bouncer& b : bouncers_) {
-    b.kick = b.speed;
-    b.slowest = slowestBounce(s, b.kick);
+}
+
+void IslandImpacts::findLimits(const TermSource& s, const TouchedIsland& island) {
+  const auto add = [&](int dof, double sign, double speed) {
+    if (!(sign * speed * s.input.dt >= -TOUCH)) return;
+    Bouncer bouncer;
+    bouncer.dof = dof;
+    bouncer.sign = sign;
+    bouncer.holds = true;
+    bouncers_.push_back(bouncer);
+  };
+  for (const JointTerm& joint : island.terms.joints) {
+    if (!(joint.limit_gain > 0)) continue;
+    add(joint.dof, 1, joint.lower_velocity);
+    add(joint.dof, -1, joint.upper_velocity);
   }
 }
 
 void IslandImpacts::setSpeeds(const TermSource& s, const TouchedIsland& island, const Eigen::VectorXd& velocity) {
   for (const int tree : island.model.trees) computeTwists(s.forest, tree, s.motion, velocity, &space_->twist);
-  for (Bouncer& b : bouncers_) b.speed = normalSpeed(*b.pair, island.terms.contacts[b.contact], space_->twist);
+  for (Bouncer& b : bouncers_)
+    b.speed = b.contact < 0 ? b.sign * velocity[b.dof] : normalSpeed(*b.pair, island.terms.contacts[b.contact], space_->twist);
+}
+
+// Lets a bouncer meet in this round. @return whether it can: something moves there
+bool IslandImpacts::meet(const TermSource& s, const TouchedIsland& island, Bouncer* b) {
+  const ImpactRows::Source source{s.forest, s.motion, &mass_, space_};
+  if (b->row < 0)
+    b->row = b->contact < 0 ? rows_.addLimit(source, b->dof, b->sign) : rows_.add(source, *b->pair, island.terms.contacts[b->contact]);
+  if (!(rows_.inverseMass(b->row) > 0)) return false;
+  Meeting meeting;
+  meeting.bouncer = static_cast<int>(b - bouncers_.data());
+  meeting.row = b->row;
+  meeting.friction = -b->speed > b->friction_speed ? b->friction : b->slow_friction;
+  meetings_.push_back(meeting);
+  return true;
 }
 
 // Finds the contacts that approach so fast that they will meet within the step, and the share of its speed that each will keep: restitution
@@ -95,34 +147,67 @@ bool IslandImpacts::findMeetings(const TermSource& s, const TouchedIsland& islan
   setSpeeds(s, island, space_->velocity);
   for (Bouncer& b : bouncers_) {
     const double closing = -b.speed;
-    if (!(closing > b.slowest) || b.depth - dt * (b.speed + b.kick) <= 0) continue;
-    if (b.row < 0) b.row = rows_.add(s.forest, s.motion, *b.pair, island.terms.contacts[b.contact], space_);
-    if (!(rows_.inverseMass(b.row) > 0)) continue;
+    if (!b.has_impacts || !(closing > b.slowest) || b.depth - dt * (b.speed + b.kick) <= 0) continue;
+    if (!meet(s, island, &b) || !(b.restitution > 0)) continue;
     const double e2 = b.restitution * b.restitution, fall = 4 * b.kick * b.depth / (dt * closing * closing);
-    Meeting meeting;
-    meeting.bouncer = static_cast<int>(&b - bouncers_.data());
-    meeting.row = b.row;
-    meeting.friction = closing > b.friction_speed ? b.friction : b.slow_friction;
-    if (b.restitution > 0) meeting.restitution = std::sqrt(std::clamp(e2 - (1 - e2) * fall, 0.0, 1.0));
-    meetings_.push_back(meeting);
+    meetings_.back().restitution = std::sqrt(std::clamp(e2 - (1 - e2) * fall, 0.0, 1.0));
   }
   findGroups(s.forest, island.model);
   return !meetings_.empty();
 }
 
+// Adds what this round has pushed against and touches, but has not held, and then takes the round back. @return whether there is any
+bool IslandImpacts::findHolds(const TermSource& s, const TouchedIsland& island) {
+  setSpeeds(s, island, space_->velocity);
+  const std::size_t met = meetings_.size();
+  for (Bouncer& b : bouncers_) {
+    if (!b.holds || !(-b.speed > b.slowest && b.speed_before - b.speed > b.slowest)) continue;
+    const auto is_b = [&](const Meeting& m) { return &bouncers_[m.bouncer] == &b; };
+    if (std::any_of(meetings_.begin(), meetings_.begin() + met, is_b) || !meet(s, island, &b)) continue;
+    meetings_.back().holds = true;
+  }
+  if (meetings_.size() == met) return false;
+  takeBack(s.forest, island.model.trees);
+  findGroups(s.forest, island.model);
+  return true;
+}
+
+void IslandImpacts::beginRound(const Forest& forest, const std::vector<int>& trees) {
+  for (const int tree : trees) {
+    const ForestTree& t = forest.trees()[tree];
+    space_->before.segment(t.first_dof, t.dofCount()) = space_->velocity.segment(t.first_dof, t.dofCount());
+  }
+  for (Bouncer& b : bouncers_) {
+    b.speed_before = b.speed;
+    b.impulse_before = b.impulse;
+  }
+}
+
+void IslandImpacts::takeBack(const Forest& forest, const std::vector<int>& trees) {
+  for (const int tree : trees) {
+    const ForestTree& t = forest.trees()[tree];
+    space_->velocity.segment(t.first_dof, t.dofCount()) = space_->before.segment(t.first_dof, t.dofCount());
+  }
+  for (Bouncer& b : bouncers_) b.impulse = b.impulse_before;
+  for (Meeting& m : meetings_) m.impulse.setZero();
+}
+
 // Groups the meetings: those that no moved tree ties together do not act on each other.
 void IslandImpacts::findGroups(const Forest& forest, const IslandModel& model) {
-  const auto treeOf = [&](int node) {
-    const auto at = std::lower_bound(model.trees.begin(), model.trees.end(), forest.nodes()[node].tree);
-    return static_cast<int>(at - model.trees.begin());
+  const auto placeOf = [&](int tree) {
+    return static_cast<int>(std::lower_bound(model.trees.begin(), model.trees.end(), tree) - model.trees.begin());
   };
+  const auto treeOf = [&](const Bouncer& b) { return forest.nodes()[b.contact < 0 ? forest.nodeOfDof(b.dof) : b.pair->a].tree; };
   groups_.reset(static_cast<int>(model.trees.size()));
   for (const Meeting& m : meetings_) {
-    const BodyPair& pair = *bouncers_[m.bouncer].pair;
-    if (pair.b >= 0) groups_.join(treeOf(pair.a), treeOf(pair.b));
+    const Bouncer& b = bouncers_[m.bouncer];
+    const int tree = treeOf(b);
+    for (const int moved : mass_.movedWith(tree)) groups_.join(placeOf(tree), placeOf(moved));
+    if (b.contact < 0 || b.pair->b < 0) continue;
+    for (const int moved : mass_.movedWith(forest.nodes()[b.pair->b].tree)) groups_.join(placeOf(tree), placeOf(moved));
   }
   groups_.number();
-  for (Meeting& m : meetings_) m.group = groups_.islandOf(treeOf(bouncers_[m.bouncer].pair->a));
+  for (Meeting& m : meetings_) m.group = groups_.islandOf(placeOf(treeOf(bouncers_[m.bouncer])));
   std::sort(meetings_.begin(), meetings_.end(),
             [](const Meeting& a, const Meeting& b) { return a.group != b.group ? a.group < b.group : a.bouncer < b.bouncer; });
 }
@@ -155,6 +240,19 @@ void IslandImpacts::scale(double factor, Meeting* first, Meeting* end) {
   for (Meeting* m = first; m != end; ++m) push(factor * m->impulse, m);
 }
 
+// Sweeps over the meetings of a group, by `visit`, until nothing changes any more.
+template <typename Visit>
+void IslandImpacts::sweep(double fastest, Meeting* first, Meeting* end, const Visit& visit) {
+  const bool holding = std::any_of(first, end, [](const Meeting& m) { return m.holds; });
+  const double exact = (holding ? holding_exactness_ : EXACTNESS) * fastest;
+  for (int left = holding ? HOLDING_SWEEPS : MAX_SWEEPS; left > 0 && work_left_ > 0; --left) {
+    double change = 0;
+    for (Meeting* m = first; m != end; ++m) change = std::max(change, visit(m));
+    work_left_ -= static_cast<int>(end - first);
+    if (change <= exact) break;
+  }
+}
+
 // The plastic impact of a group, with friction, by sweeps. @return [J] lost, never below 0
 double IslandImpacts::compress(Meeting* first, Meeting* end) {
   double fastest = 0;
@@ -164,7 +262,8 @@ double IslandImpacts::compress(Meeting* first, Meeting* end) {
   }
   // All at once, to begin with: a symmetric impact stays symmetric.
   const double share = 1.0 / static_cast<double>(end - first);
-  for (Meeting* m = first; m != end; ++m) push({share * -m->before[0] / rows_.inverseMass(m->row), 0, 0}, m);
+  for (Meeting* m = first; m != end; ++m)
+    if (!m->holds) push({share * -m->before[0] / rows_.inverseMass(m->row), 0, 0}, m);
   const auto sums = [&](double* along, double* square) {
     *along = *square = 0;
     for (Meeting* m = first; m != end; ++m) {
@@ -175,15 +274,10 @@ double IslandImpacts::compress(Meeting* first, Meeting* end) {
   double along, square;
   sums(&along, &square);
   if (along > 0 && square > 0) scale(along / square, first, end);
-  for (int sweep = 0; sweep < MAX_SWEEPS && work_left_ > 0; ++sweep) {
-    double change = 0;
-    for (Meeting* m = first; m != end; ++m) {
-      change = std::max(change, stop(m));
-      change = std::max(change, rub(m->friction * m->impulse[0], m));
-    }
-    work_left_ -= static_cast<int>(end - first);
-    if (change <= EXACTNESS * fastest) break;
-  }
+  sweep(fastest, first, end, [this](Meeting* m) {
+    const double stopped = stop(m);
+    return std::max(stopped, rub(m->friction * m->impulse[0], m));
+  });
   sums(&along, &square);
   if (along >= 0.5 * square) return along - 0.5 * square;
   // Friction, whose bounds went on shrinking, has added energy: as much along the same impulses as takes most of it away.
@@ -208,12 +302,10 @@ void IslandImpacts::expand(Meeting* first, Meeting* end, double lost) {
   }
   double fastest = 0;
   for (Meeting* m = first; m != end; ++m) fastest = std::max(fastest, rows_.velocity(m->row, space_->velocity).norm());
-  for (int sweep = 0; sweep < MAX_SWEEPS && work_left_ > 0; ++sweep) {
-    double change = 0;
-    for (Meeting* m = first; m != end; ++m) change = std::max(change, rub(m->friction * m->impulse[0], m));
-    work_left_ -= static_cast<int>(end - first);
-    if (change <= EXACTNESS * fastest) break;
-  }
+  sweep(fastest, first, end, [this](Meeting* m) {
+    const double stopped = m->holds ? stop(m) : 0;
+    return std::max(stopped, rub(m->friction * m->impulse[0], m));
+  });
   double along = 0, square = 0;
   for (Meeting* m = first; m != end; ++m) {
     along += m->impulse.dot(m->before);
@@ -224,28 +316,51 @@ void IslandImpacts::expand(Meeting* first, Meeting* end, double lost) {
   for (Meeting* m = first; m != end; ++m) bouncers_[m->bouncer].impulse += m->impulse;
 }
 
+void IslandImpacts::react() {
+  for (Meeting *first = meetings_.data(), *last = first + meetings_.size(); first != last;) {
+    Meeting* end = first;
+    while (end != last && end->group == first->group) ++end;
+    expand(first, end, compress(first, end));
+    first = end;
+  }
+}
+
+// Makes the round again until all that was pushed against holds: roughly while that is looked for, then exactly.
+void IslandImpacts::hold(const TermSource& s, const TouchedIsland& island) {
+  if (!findHolds(s, island)) return;
+  holding_exactness_ = SEARCH_EXACTNESS;
+  react();
+  for (int again = 1; again < MAX_HOLDING && work_left_ > 0 && findHolds(s, island); ++again) react();
+  takeBack(s.forest, island.model.trees);
+  holding_exactness_ = HOLDING_EXACTNESS;
+  react();
+}
+
 bool IslandImpacts::happen(const TermSource& s, const TouchedIsland& island, ImpactSpace* space, SolverSpace* solver) {
   space_ = space;
   begin(s, island, *solver);
+  const bool any_holds = std::any_of(bouncers_.begin(), bouncers_.end(), [](const Bouncer& b) { return b.holds; });
   for (int round = 0; round < MAX_ROUNDS && work_left_ > 0 && findMeetings(s, island); ++round) {
-    for (Meeting *first = meetings_.data(), *last = first + meetings_.size(); first != last;) {
-      Meeting* end = first;
-      while (end != last && end->group == first->group) ++end;
-      expand(first, end, compress(first, end));
-      first = end;
-    }
+    beginRound(s.forest, island.model.trees);
+    react();
+    if (any_holds) hold(s, island);
   }
   if (rows_.empty()) return false;
   finish(s.forest, island, solver);
   return true;
 }
 
+// The impulses of limits are left to the solve, which finds them again from the momentum; the velocities that they lead to are told.
 void IslandImpacts::finish(const Forest& forest, const TouchedIsland& island, SolverSpace* solver) {
   impulses_.assign(island.terms.contacts.size(), Vector3::Zero());
   for (const Bouncer& b : bouncers_) {
     if (b.row < 0) continue;
-    rows_.addMomentum(b.row, b.impulse, &space_->momentum);
     rows_.push(b.row, b.impulse, &space_->leap);
+    if (b.contact < 0) {
+      solver->mass_velocity[b.dof] += b.sign * b.impulse[0];
+      continue;
+    }
+    rows_.addMomentum(b.row, b.impulse, &space_->momentum);
     impulses_[b.contact] = rows_.inWorld(b.row, b.impulse);
   }
   for (const int tree : island.model.trees) {

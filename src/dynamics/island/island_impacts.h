@@ -41,10 +41,16 @@ class IslandImpacts {
   void takeFrom(const Forest& forest, const std::vector<int>& trees, Eigen::VectorXd* change) const;
 
  private:
-  /** A contact that has restitution, or a friction of its own in impacts. */
+  /**
+   * A contact that has impacts, having restitution or a friction of its own in them; or what touches and does not bounce, a contact or a
+   * joint at its limit: it holds against the impacts of others.
+   */
   struct Bouncer {
-    int contact = 0;  ///< of the island
+    int contact = -1;  ///< of the island; -1: a limit
     const BodyPair* pair = nullptr;
+    int dof = -1;     ///< of a limit
+    double sign = 0;  ///< of a limit: 1: the lower one, -1: the upper one
+    bool has_impacts = false, holds = false;
     int row = -1;  ///< of rows_, once it has met
     double restitution = 0;
     double friction = 0, slow_friction = 0;  ///< in impacts, and in those of up to friction_speed
@@ -53,20 +59,33 @@ class IslandImpacts {
     double kick = 0;                         ///< [m/s] of its normal velocity by half of the step's forces
     double slowest = 0;                      ///< [m/s] closing speed below which nothing bounces
     double speed = 0;                        ///< [m/s] along the normal, at present
+    double speed_before = 0;                 ///< [m/s] the same at the beginning of the round
     Vector3 impulse = Vector3::Zero();       ///< [N s] so far, along the row's directions
+    Vector3 impulse_before = Vector3::Zero();
   };
-  /** A bouncer that meets in this round. */
+  /** A bouncer that meets in this round, or holds. */
   struct Meeting {
     int group = 0, bouncer = 0, row = 0;
+    bool holds = false;
     double friction = 0, restitution = 0;
     Vector3 before = Vector3::Zero();   ///< [m/s] relative velocity
     Vector3 impulse = Vector3::Zero();  ///< [N s] of the phase at hand
   };
 
   void begin(const TermSource& source, const TouchedIsland& island, const SolverSpace& solver);
+  void findBouncers(const TermSource& source, const TouchedIsland& island);
+  void findLimits(const TermSource& source, const TouchedIsland& island);
   void setSpeeds(const TermSource& source, const TouchedIsland& island, const Eigen::VectorXd& velocity);
+  bool meet(const TermSource& source, const TouchedIsland& island, Bouncer* bouncer);
   bool findMeetings(const TermSource& source, const TouchedIsland& island);
+  void beginRound(const Forest& forest, const std::vector<int>& trees);
+  void takeBack(const Forest& forest, const std::vector<int>& trees);
+  void react();
+  void hold(const TermSource& source, const TouchedIsland& island);
+  bool findHolds(const TermSource& source, const TouchedIsland& island);
   void findGroups(const Forest& forest, const IslandModel& model);
+  template <typename Visit>
+  void sweep(double fastest, Meeting* first, Meeting* end, const Visit& visit);
   double compress(Meeting* first, Meeting* end);
   void expand(Meeting* first, Meeting* end, double lost);
   double push(const Vector3& impulse, Meeting* meeting);
@@ -77,8 +96,10 @@ class IslandImpacts {
 
   ImpactSpace* space_ = nullptr;
   int work_left_ = 0;
+  double holding_exactness_ = 0;
   std::vector<Bouncer> bouncers_;
   std::vector<Meeting> meetings_;
+  ImpactMass mass_;
   ImpactRows rows_;
   Islands groups_;  ///< of the model's trees
   std::vector<Vector3> impulses_;

@@ -1,38 +1,38 @@
-// Changes of trees' velocities by impulses at contacts, at once; motors and joint friction give no impulses.
+// Changes of trees' velocities by impulses at contacts and joint limits, at once; motors and joint friction give no impulses.
 #pragma once
 
 #include <vector>
 
 #include "lanes/body_pair.h"
 #include "lanes/contact_term.h"
-#include "trees/forest_motion.h"
-#include "trees/tree_rows.h"
+#include "problem/impact_mass.h"
 
 namespace blem_sim::dynamics {
 
-/** Vectors over the forest that impacts are reckoned in, each island in its own trees. */
-struct ImpactSpace {
-  Eigen::VectorXd velocity;  ///< with half of the step's forces: that of the moment when impacts happen
-  Eigen::VectorXd leap;      ///< its change by impacts
-  Eigen::VectorXd momentum;  ///< the mass matrix times that: the sum of impulses
-  Eigen::VectorXd column;    ///< work space
-  TreeFactor factor;         ///< of the mass matrix
-  TreePaths paths;
-  std::vector<Vector6> twist;  ///< per node
-
-  void resize(const Forest& forest);
-};
-
 /**
  * Contacts as three directions each, the normal first, along which their bodies' points move against each other (A against B) and impulses
- * act on A. Used again from step to step, so that it need not allocate.
+ * act on A; and joint limits, whose first direction is that back from the limit, and which have no others. Used again from step to step, so
+ * that it need not allocate.
  */
 class ImpactRows {
  public:
-  void clear();
+  void clear() {
+    contacts_.clear();
+    sides_.clear();
+    numbers_.clear();
+  }
   bool empty() const { return contacts_.empty(); }
-  /** Precondition: the trees of both nodes are factored. @return index of the contact here */
-  int add(const Forest& forest, const ForestMotion& motion, const BodyPair& pair, const ContactTerm& term, ImpactSpace* space);
+  /** Island and work space that rows are made in. */
+  struct Source {
+    const Forest& forest;
+    const ForestMotion& motion;
+    ImpactMass* mass;  ///< of all trees that are asked for
+    ImpactSpace* space;
+  };
+  /** @return index of the contact here */
+  int add(const Source& source, const BodyPair& pair, const ContactTerm& term);
+  /** @param sign 1: the limit is the lower one, -1: the upper one. @return its index among the contacts */
+  int addLimit(const Source& source, int dof, double sign);
 
   /** Relative velocity [m/s] along the contact's directions, for given velocities of the dofs. */
   Vector3 velocity(int contact, const Eigen::VectorXd& v) const;
@@ -49,27 +49,31 @@ class ImpactRows {
   double inverseMassAcross(int contact) const { return contacts_[contact].across; }
 
  private:
+  /** A tree that an impulse moves. */
   struct Side {
-    int first_dof = 0, dofs = 0;
+    int tree = 0, first_dof = 0, dofs = 0;
     int rows = 0;  ///< in numbers_: start of three rows of J, and behind them three columns of M^-1 J', one after the other
   };
   struct Entry {
-    Matrix3 basis;  ///< columns: normal and two tangents
-    Side sides[2];
-    int side_count = 0;
+    Matrix3 basis = Matrix3::Identity();  ///< columns: normal and two tangents
+    int first_side = 0, side_end = 0;
     double normal = 0, across = 0;
   };
-  void addSide(const Forest& forest, int tree, Entry* entry);
   /** A contact's body, as it takes part in the motion of A against B. */
   struct Partner {
     int node;
     Vector3 shift;  ///< from the reference point of the contact to the node's
     double sign;    ///< 1: A, -1: B
   };
-  void fill(const Forest& forest, const ForestMotion& motion, const Partner& partner, const Vector3& point, const Entry& entry);
-  void respond(const Forest& forest, int tree, const Side& side, ImpactSpace* space);
+  Entry begin() const;
+  void addSides(const Source& source, int tree, Entry* entry);
+  const Side& sideOf(int tree, const Entry& entry) const;
+  void fill(const Source& source, const Partner& partner, const Vector3& point, const Entry& entry);
+  void respond(const Source& source, int tree, const Entry& entry);
+  Matrix3 response(const Entry& entry) const;
 
   std::vector<Entry> contacts_;
+  std::vector<Side> sides_;
   std::vector<double> numbers_;
 };
 
