@@ -209,6 +209,7 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   const IslandModel& model = island->model;
   readContacts(input, *island, result);
   readJoints(input, *island, result, &memory_.joints);
+  island->impacts.takeFrom(input.dt, &memory_.joints);
   for (const int tree : model.trees) {
     const ForestTree& t = forest_.trees()[tree];
     motion_.next_velocity.segment(t.first_dof, t.dofCount()) = space_.velocity.segment(t.first_dof, t.dofCount());

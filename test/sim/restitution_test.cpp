@@ -76,7 +76,7 @@ TEST(Restitution, ABallBouncesOffWhatLiesOnTheGround) {
         simulator.step();
         if (bodyOf(simulator, "ball").v_WCom.z() > 0) apex = std::max(apex, bodyOf(simulator, "ball").X_WB.translation().z() - top);
       }
-      EXPECT_NEAR(apex / FALL, E * E, 0.005) << plates << " plates of " << mass << " kg";
+      EXPECT_NEAR(apex / FALL, E * E, 1e-4) << plates << " plates of " << mass << " kg";
       EXPECT_LT(bodyOf(simulator, "plate0").v_WCom.norm(), 1e-6) << plates << " plates of " << mass << " kg";
     }
 }

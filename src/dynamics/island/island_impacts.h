@@ -24,8 +24,9 @@ class IslandImpacts {
   bool expect(const TermSource& source, const TouchedIsland& island);
   /**
    * Contacts that have impacts and will meet within the step reflect velocities as often as it takes until none approaches any more, or
-   * the bounds on work are reached; contacts that then still approach are left to the solve, where they do not bounce. No reflection adds
-   * kinetic energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
+   * the bounds on work are reached; what they push against that touches without bouncing, contacts and limits, holds; contacts that then
+   * still approach are left to the solve, where they do not bounce. No reflection adds kinetic energy. If any happens, the free momentum of
+   * `solver` and its first guess of the velocities change by the impulses.
    * @return whether anything met; if not, nothing was changed
    * Precondition: expect() was true
    */
@@ -39,6 +40,8 @@ class IslandImpacts {
   void addTo(IslandTerms* terms) const;
   /** Takes the leaps of velocity, if any, away from changes that are to be extrapolated. */
   void takeFrom(const Forest& forest, const std::vector<int>& trees, Eigen::VectorXd* change) const;
+  /** Takes what limits held against impacts, if any, away from what they are expected to go on with. */
+  void takeFrom(double dt, std::vector<JointRecord>* records) const;
 
  private:
   /**
@@ -48,8 +51,9 @@ class IslandImpacts {
   struct Bouncer {
     int contact = -1;  ///< of the island; -1: a limit
     const BodyPair* pair = nullptr;
-    int dof = -1;     ///< of a limit
-    double sign = 0;  ///< of a limit: 1: the lower one, -1: the upper one
+    int dof = -1, joint = -1;  ///< of a limit
+    double sign = 0;           ///< of a limit: 1: the lower one, -1: the upper one
+    double pushed = 0;         ///< [N s or N m s] of a limit, in the last step
     bool has_impacts = false, holds = false;
     int row = -1;  ///< of rows_, once it has met
     double restitution = 0;
@@ -75,6 +79,7 @@ class IslandImpacts {
   void begin(const TermSource& source, const TouchedIsland& island, const SolverSpace& solver);
   void findBouncers(const TermSource& source, const TouchedIsland& island);
   void findLimits(const TermSource& source, const TouchedIsland& island);
+  void addHolding(const TermSource& source, const TouchedIsland& island);
   void setSpeeds(const TermSource& source, const TouchedIsland& island, const Eigen::VectorXd& velocity);
   bool meet(const TermSource& source, const TouchedIsland& island, Bouncer* bouncer);
   bool findMeetings(const TermSource& source, const TouchedIsland& island);
