@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/mesh_winding.h"
 
 namespace blem_sim::model {
 namespace {
@@ -63,8 +64,11 @@ Inertial shapeInertial(const CollisionShape& shape) {
     if (!mesh.isPoint(0)) return capsule(p, q, shape.radius);
     return ball(p, shape.radius, DENSITY * 4.0 / 3.0 * M_PI * std::pow(shape.radius, 3));
   }
-  Inertial solid;
-  if (shape.report.closed && geometry::massFromVolume(mesh, DENSITY * enclosedVolume(mesh), &solid)) return solid;
+  if (shape.report.closed) {
+    Inertial solid;
+    const geometry::TriangleMesh outward = geometry::woundOutward(mesh);
+    if (geometry::massFromVolume(outward, DENSITY * enclosedVolume(outward), &solid)) return solid;
+  }
   return geometry::massFromSurface(mesh, DENSITY * SHELL_THICKNESS * area(mesh));
 }
 

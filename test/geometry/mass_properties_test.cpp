@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "blem_sim/geometry/mesh_winding.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 #include "geometry/random_shapes.h"
 
@@ -79,6 +80,56 @@ TEST(MassFromVolume, RefusesWhatEnclosesNothing) {
   EXPECT_FALSE(massFromVolume(pointMesh({1, 1, 1}), 1, &untouched));
   EXPECT_FALSE(massFromVolume(TriangleMesh(), 1, &untouched));
   EXPECT_EQ(untouched.mass, -7);
+}
+
+void append(const TriangleMesh& part, const Vector3& at, TriangleMesh* mesh) {
+  const int first = static_cast<int>(mesh->vertices.size());
+  for (const Vector3& v : part.vertices) mesh->vertices.push_back(v + at);
+  for (const Vector3i& e : part.elements) mesh->elements.push_back(e + Vector3i::Constant(first));
+}
+
+TriangleMesh insideOut(TriangleMesh mesh) {
+  for (Vector3i& e : mesh.elements) e = Vector3i(e.reverse());
+  return mesh;
+}
+
+/** A hollow box with a ball in its hole, and a smaller box beside it; each may be inside out, all on its own or a few triangles of it. */
+TriangleMesh mixedParts(bool box_turned, bool beside_turned, int flipped) {
+  TriangleMesh hollow = boxMesh({2, 2, 2});
+  append(insideOut(boxMesh({1, 1, 1})), Vector3::Zero(), &hollow);
+  append(icosphereMesh(0.2, 2), Vector3::Zero(), &hollow);
+  TriangleMesh all = box_turned ? insideOut(hollow) : hollow;
+  append(beside_turned ? insideOut(boxMesh({1, 1, 2})) : boxMesh({1, 1, 2}), {3, 0, 0}, &all);
+  for (int i = 0; i < flipped; ++i) all.elements[5 * i] = Vector3i(all.elements[5 * i].reverse());
+  return all;
+}
+
+// Parts that were inside out counted as holes, and one flipped triangle made a shell of all.
+TEST(MassFromVolume, OfPartsWhateverTheirWinding) {
+  MassProperties expected;
+  ASSERT_TRUE(massFromVolume(mixedParts(false, false, 0), 3, &expected));
+  for (const bool box_turned : {false, true})
+    for (const bool beside_turned : {false, true})
+      for (const int flipped : {0, 1, 4}) {
+        MassProperties found;
+        ASSERT_TRUE(massFromVolume(woundOutward(mixedParts(box_turned, beside_turned, flipped)), 3, &found));
+        EXPECT_LT((found.com - expected.com).norm(), 1e-13) << box_turned << beside_turned << flipped;
+        EXPECT_LT((found.inertia - expected.inertia).norm(), 1e-12) << box_turned << beside_turned << flipped;
+      }
+}
+
+TEST(WoundOutward, LeavesWhatIsOpenOrOneSidedAsItIs) {
+  TriangleMesh open = boxMesh({1, 1, 1});
+  open.elements.pop_back();
+  open.elements[3] = Vector3i(open.elements[3].reverse());
+  EXPECT_EQ(woundOutward(open).elements, open.elements);
+  const TriangleMesh box = boxMesh({1, 2, 3});
+  EXPECT_EQ(woundOutward(box).elements, box.elements);
+  // The projective plane on six vertices: closed, with one side.
+  TriangleMesh plane;
+  plane.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}};
+  plane.elements = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}};
+  EXPECT_EQ(woundOutward(plane).elements, plane.elements);
 }
 
 TEST(MassFromSurface, OfASquarePlateAndOfATriangle) {

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/mesh_winding.h"
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
 #include "config/scene_limits.h"
@@ -26,7 +27,7 @@ constexpr double SMALLEST_EXTENT = 0.001;
 /** Mass properties in the object's frame from its shape, and in words their source. */
 geometry::MassProperties massFromShape(const geometry::TriangleMesh& mesh_O, bool closed, double mass, std::string* from) {
   geometry::MassProperties properties;
-  if (closed && geometry::massFromVolume(mesh_O, mass, &properties)) {
+  if (closed && geometry::massFromVolume(geometry::woundOutward(mesh_O), mass, &properties)) {
     *from = "the enclosed volume";
     return properties;
   }
