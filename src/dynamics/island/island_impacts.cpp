@@ -8,7 +8,8 @@ namespace {
 
 constexpr int MAX_ROUNDS = 100;             // a row of as many touching bodies passes an impact on
 constexpr int MAX_SWEEPS = 100;             // of the contacts that meet in a round
-constexpr int HOLDING_SWEEPS = 1000;        // of those that others hold: what is light between what is heavy takes many
+constexpr int HOLDING_SWEEPS = 1000;        // of those that others hold: what is light between what is heavy takes many,
+constexpr int HOLDING_WORK = 400000;        // but, beyond MAX_SWEEPS, no more than visit so many dofs
 constexpr int MAX_HOLDING = 20;             // times that a round is made again, since more has to hold
 constexpr int MAX_WORK = 100000;            // contacts visited, over all sweeps of a step
 constexpr double EXACTNESS = 1e-11;         // of the largest speed: changes of velocity at which a sweep is the last
@@ -137,7 +138,13 @@ template <typename Visit>
 void IslandImpacts::sweep(double fastest, Meeting* first, Meeting* end, const Visit& visit) {
   const bool holding = std::any_of(first, end, [](const Meeting& m) { return m.holds; });
   const double exact = (holding ? holding_exactness_ : EXACTNESS) * fastest;
-  for (int left = holding ? HOLDING_SWEEPS : MAX_SWEEPS; left > 0 && work_left_ > 0; --left) {
+  int left = MAX_SWEEPS;
+  if (holding) {
+    int dofs = 0;
+    for (const Meeting* m = first; m != end; ++m) dofs += rows_.dofs(m->row);
+    left = std::clamp(HOLDING_WORK / dofs, MAX_SWEEPS, HOLDING_SWEEPS);
+  }
+  for (; left > 0 && work_left_ > 0; --left) {
     double change = 0;
     for (Meeting* m = first; m != end; ++m) change = std::max(change, visit(m));
     work_left_ -= static_cast<int>(end - first);

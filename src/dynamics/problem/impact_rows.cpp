@@ -21,6 +21,7 @@ void ImpactRows::addSides(const Source& s, int tree, Entry* entry) {
     const ForestTree& t = s.forest.trees()[moved];
     sides_.push_back({moved, t.first_dof, t.dofCount(), static_cast<int>(numbers_.size())});
     numbers_.resize(numbers_.size() + 6 * t.dofCount(), 0.0);
+    entry->dofs += t.dofCount();
   }
   entry->side_end = static_cast<int>(sides_.size());
 }

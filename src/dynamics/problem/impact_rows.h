@@ -40,6 +40,8 @@ class ImpactRows {
   void push(int contact, const Vector3& impulse, Eigen::VectorXd* v) const;
   /** Adds the impulse to momenta. */
   void addMomentum(int contact, const Vector3& impulse, Eigen::VectorXd* momentum) const;
+  /** Number of dofs that an impulse changes the velocities of; not 0 where its inverse mass is not. */
+  int dofs(int contact) const { return contacts_[contact].dofs; }
   /** The impulse in world axes. */
   Vector3 inWorld(int contact, const Vector3& impulse) const { return contacts_[contact].basis * impulse; }
 
@@ -57,6 +59,7 @@ class ImpactRows {
   struct Entry {
     Matrix3 basis = Matrix3::Identity();  ///< columns: normal and two tangents
     int first_side = 0, side_end = 0;
+    int dofs = 0;
     double normal = 0, across = 0;
   };
   /** A contact's body, as it takes part in the motion of A against B. */
