@@ -221,7 +221,7 @@ TEST(Heaps, CrowdsAreSharedByThreadsUnaskedToTheSameBits) {
   SimulationConfig alone = wall(36, 9);
   alone.solver.threads = 1;
   Simulator one(alone, model::UriResolver()), chosen(wall(36, 9), model::UriResolver());
-  for (Simulator* simulator : {&one, &chosen}) run(simulator, SANITIZED ? 0.005 : 0.05);
+  for (Simulator* simulator : {&one, &chosen}) run(simulator, 0.05);
   EXPECT_GT(chosen.report().reduced_contacts, static_cast<int>(dynamics::CROWDED));
   EXPECT_EQ(chosen.stateHash(), one.stateHash());
 }
