@@ -42,7 +42,7 @@ class DriveController {
   int robot() const;                  ///< @throws InputError: it was removed
   int base() const { return base_; }  ///< link of the robot's description
   bool running() const { return running_; }
-  /** What no other running controller may have: joints, or the root link of a robot that is pushed. */
+  /** Joints, or the root link of a robot that is pushed: no other running controller may have them. */
   std::vector<std::string> claims() const;
 
   /** Stops the wheels; commands are taken from now on, and the encoder's odometry begins here. What takes angles steers straight. */
