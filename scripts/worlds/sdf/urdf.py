@@ -13,7 +13,7 @@ from sdf.shapes import parts_of, shape_of, urdf_shape
 
 ANY = 1e6      # [rad, m, N m, N, rad/s, m/s] that blem_sim takes for no limit
 NO_LIMIT = 1e15  # where Gazebo's default limits are
-KINDS = {"revolute": "revolute", "continuous": "continuous", "prismatic": "prismatic", "fixed": "fixed"}
+KINDS = ("revolute", "continuous", "prismatic", "fixed")  # of joints, as in URDF
 SURFACE = {"mu1": "surface/friction/ode/mu", "mu2": "surface/friction/ode/mu2", "kp": "surface/contact/ode/kp", "kd": "surface/contact/ode/kd"}
 GAZEBO_FRICTION = 1.0
 
@@ -177,13 +177,11 @@ def restitution_of(collision, where):
 
 
 def limits_of(joint, where):
-    """URDF's type and limits of a joint."""
-    if joint.kind not in KINDS:
-        raise InputError("%s: type '%s' is not read; write revolute, continuous, prismatic or fixed" % (where, joint.kind))
+    """URDF's type and limits of a joint of one of KINDS."""
     lower, upper = (number(joint.element, "axis/limit/" + end, value, where) for end, value in (("lower", -math.inf), ("upper", math.inf)))
     effort, speed = (number(joint.element, "axis/limit/" + name, -1.0, where) for name in ("effort", "velocity"))
     limits = {"effort": effort if 0 <= effort < NO_LIMIT else ANY, "velocity": speed if 0 <= speed < NO_LIMIT else ANY}
-    kind = KINDS[joint.kind]
+    kind = joint.kind
     if kind == "revolute" and lower < -NO_LIMIT and upper > NO_LIMIT:
         kind = "continuous"
     if kind in ("revolute", "prismatic"):

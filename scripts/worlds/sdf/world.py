@@ -6,7 +6,7 @@ from sdf.files import included
 from sdf.model import WORLD, Reader
 from sdf.poses import angles, pose, tidy
 from sdf.shapes import Mesh, parts_of, shape_of
-from sdf.urdf import KINDS, UrdfWriter, mesh_uri, restitution_of, surface_of, surfaces_of
+from sdf.urdf import KINDS, UrdfWriter, mesh_uri, restitution_of, shifted, surface_of, surfaces_of
 
 READ = {"model", "include", "physics", "gravity", "state"}
 SOFTEST_RIGID = 1e6  # [N/m] from which surfaces are rigid
@@ -189,9 +189,7 @@ class World:
             mesh = Mesh()
             meshes.append((surface, mesh))
         for name, sizes, height in parts:
-            X = X_ML.copy()
-            X[:3, 3] += height * X[:3, 2]
-            mesh.add(name, sizes, X)
+            mesh.add(name, sizes, X_ML @ shifted(height))
 
     def write(self, source):
         """Writes world.yaml, and returns its path. source: name of the file that it was made of."""
